@@ -1,0 +1,74 @@
+// geometry.hpp: the shape of one part in its own frame: triangles and surfaces of revolution with one closest-point rule.
+//
+// A point touches a face, an edge or a vertex only where that feature is a local minimum of the distance over the
+// connected surface (its Voronoi region), so that each is found once. Minima whose normals differ by less than the
+// crease angle are one contact, the nearest, so that a fine mesh of a smooth wall acts as one wall.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/vec3.hpp"
+#include "calx/geometry.h"
+
+namespace calx {
+
+/// The nearest point of a surface to a sphere centre, part frame.
+struct SurfacePoint {
+  Vec3 point;            // m, on the surface
+  Vec3 normal;           // unit, from the surface towards the centre
+  double distance = 0;   // m, from the centre to point, >= 0
+  std::uint32_t element = 0;
+};
+
+/// What is wrong with a mesh; each is named in messages with its first place.
+struct MeshFaults {
+  std::size_t open_edges = 0, degenerate = 0, duplicate = 0, inverted = 0, non_manifold = 0;
+  std::string describe() const;  // "3 open edges (first at (…) m), …"; empty when none
+};
+
+/// Triangles for pictures and VTK; surfaces of revolution are cut within the chord given.
+struct Tessellation {
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> triangles;  // three vertex numbers each
+};
+
+class Surface {
+ public:
+  Surface();
+  ~Surface();
+  Surface(Surface&&) noexcept;
+  Surface& operator=(Surface&&) noexcept;
+
+  /// Runs a geometry plugin's build() and indexes the result. Throws Error(Fault::plugin) with the plugin's message,
+  /// Error(Fault::settings) for a shape without elements or with non-finite or degenerate elements.
+  static Surface build(const calx_geometry& table, const calx_instance* instance, const calx_host* host,
+                       const std::string& part_name);
+
+  /// For tests and built-in shapes: add elements, then finish().
+  void add_triangles(const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& index);
+  void add_revolution(const Vec3& origin, const Vec3& axis, const std::vector<double>& r_z, bool closed);
+  void finish();
+
+  Box bounds() const;
+  std::size_t element_count() const;
+  MeshFaults faults() const;
+
+  /// Appends, ascending, the elements whose distance to p may be at most reach, m. [worker]
+  void gather(const Vec3& p, double reach, std::vector<std::uint32_t>& elements) const;
+
+  /// Contacts of a sphere of the radius given with the candidate elements: the local minima nearer than radius, deepest
+  /// first, at most max_count. Pure, no allocation. A centre exactly on the surface gives the face's own normal.
+  /// [worker]
+  std::size_t closest(const Vec3& p, double radius, const std::uint32_t* elements, std::size_t element_count,
+                      SurfacePoint* out, std::size_t max_count) const;
+
+  Tessellation tessellate(double chord) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calx

@@ -1,0 +1,60 @@
+// measure.hpp: sensors: built-in kinds and plugins ("calx.sensor/1") behind one interface.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/state.hpp"
+#include "calx/sensor.h"
+#include "measure/world.hpp"
+
+namespace calx {
+
+/// A grid of numbers a sensor can give beside its series (pile height map), row by row, y outer.
+struct FieldResult {
+  std::string name, unit;
+  std::size_t nx = 0, ny = 0;
+  Vec3 origin;          // m, corner of the first cell
+  double cell = 0;      // m
+  std::vector<double> values;  // NaN where nothing is
+};
+
+/// A curve (pile profile).
+struct CurveResult {
+  std::string name, x_name, y_name;  // names end in their unit: "x_m", "height_m"
+  std::vector<double> x, y;
+};
+
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  const std::string& name() const { return name_; }
+  const std::string& kind() const { return kind_; }
+  double every() const { return every_; }
+  /// Column names with units, without time: "mass_kg".
+  virtual std::vector<std::string> columns() const = 0;
+  /// One row. May keep state between calls (flow, cycles); called at rising times.
+  virtual std::vector<double> sample(const WorldView& world) = 0;
+  /// Called after every step when it asks for it (flow through a plane, cycle masses): cheap, no allocation.
+  virtual bool wants_every_step() const { return false; }
+  virtual void step(const WorldView&) {}
+  virtual std::vector<FieldResult> fields() const { return {}; }
+  virtual std::vector<CurveResult> curves() const { return {}; }
+  virtual void save(StateWriter&, const std::string& /*prefix*/) const {}
+  virtual void load(const StateReader&, const std::string& /*prefix*/) {}
+
+ protected:
+  std::string name_, kind_;
+  double every_ = 0;
+  friend std::unique_ptr<Sensor> make_sensor(const SensorSettings&, const CaseSettings&);
+};
+
+/// Built-in kinds: mass, cycle-mass, flow, bulk-density, coordination, height-map, angle-of-repose, residue, part-load,
+/// energy, mass-ledger. Throws Error(Fault::settings) for an unknown kind (nearest name) or bad keys.
+bool is_builtin_sensor(const std::string& kind);
+std::unique_ptr<Sensor> make_sensor(const SensorSettings& settings, const CaseSettings& world);
+/// A plugin's sensor; table and instance outlive it.
+std::unique_ptr<Sensor> make_plugin_sensor(const SensorSettings& settings, const calx_sensor* table,
+                                           calx_instance* instance, const calx_host* host);
+
+}  // namespace calx

@@ -1,0 +1,88 @@
+// plugin.hpp: finds, loads and instantiates plugins. Discovery reads manifests and runs nothing; loading happens only for
+// ids that a case names, from the folders given, never from the working directory.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calx/all.h"
+#include "config/config.hpp"
+
+namespace calx {
+
+/// One manifest NAME.plugin.json found in a search folder.
+struct PluginManifest {
+  std::string id, kind, version, license, summary;
+  std::string library;  // absolute path of the shared library
+  std::string path;     // absolute path of the manifest
+  std::string sha256;   // of the library as the manifest states it; empty: not stated
+  std::string refused;  // why it cannot be used (bad manifest, duplicate id, other architecture); empty: usable
+};
+
+/// Search folders in order: given, CALX_PLUGIN_PATH (secure_getenv), $XDG_DATA_HOME/calx/plugins, beside the program
+/// (build tree: <dir of calx>/../plugins) and <prefix>/lib/calx/plugins.
+std::vector<std::string> plugin_search_path(const std::vector<std::string>& given);
+
+/// All manifests on the path, sorted within each folder; of a duplicate id the first wins, the others are refused.
+std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& path);
+
+class PluginLibrary;
+
+/// A created plugin instance; destroyed with the last owner. Tables live as long as it.
+class PluginInstance {
+ public:
+  PluginInstance(std::shared_ptr<PluginLibrary> library, calx_instance* instance, const calx_descriptor* descriptor);
+  ~PluginInstance();
+  PluginInstance(const PluginInstance&) = delete;
+  PluginInstance& operator=(const PluginInstance&) = delete;
+  calx_instance* get() const { return instance_; }
+  const calx_descriptor& descriptor() const { return *descriptor_; }
+  /// The table of that id, or null.
+  const void* table(const char* interface_id) const;
+  const calx_host* host() const;
+
+ private:
+  std::shared_ptr<PluginLibrary> library_;
+  calx_instance* instance_;
+  const calx_descriptor* descriptor_;
+};
+using InstancePtr = std::shared_ptr<PluginInstance>;
+
+/// What a run's provenance says of one loaded plugin.
+struct PluginProvenance {
+  std::string id, version, sha256, path;
+};
+
+/// One per simulation: ids to loaded libraries. [main]
+class PluginRegistry {
+ public:
+  /// search: see plugin_search_path. pins: id and sha256 that must match.
+  explicit PluginRegistry(const std::vector<std::string>& search,
+                          std::vector<std::pair<std::string, std::string>> pins = {});
+  ~PluginRegistry();
+
+  /// Loads the library of id if needed, in the order of ABI.md section 3 (manifest, load, symbol, magic, major, sizes,
+  /// init, factory, descriptors, required extensions), and returns its descriptor. pointer: JSON pointer where the case
+  /// names it. Throws Error(Fault::plugin): not found (nearest id and the folders searched), refused (why), wrong kind.
+  const calx_descriptor& load(const std::string& id, const std::string& kind, const std::string& file,
+                              const std::string& pointer);
+
+  /// load + resolve parameters of the descriptor + create + check of the table's draft. extra_tables: further tables
+  /// whose keys may stand in the same JSON object; their values are not returned here.
+  InstancePtr create(const std::string& id, const std::string& kind, const Parameters& parameters,
+                     const std::string& file, const std::vector<std::string>& ignore_keys = {});
+
+  const std::vector<PluginManifest>& manifests() const;
+  std::vector<PluginProvenance> provenance() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Text of `calx plugin list`, `describe ID`, `schema ID`.
+std::string plugin_list_text(const std::vector<std::string>& search);
+std::string plugin_describe_text(const std::string& id, const std::vector<std::string>& search);
+std::string plugin_schema_text(const std::string& id, const std::vector<std::string>& search);
+
+}  // namespace calx

@@ -1,0 +1,67 @@
+// simulation.hpp: builds the world from a case and moves it through time. The command line and the C API sit on it.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/state.hpp"
+#include "config/config.hpp"
+#include "measure/measure.hpp"
+#include "plugin/plugin.hpp"
+
+namespace calx {
+
+struct SimulationOptions {
+  int threads = 0;  // 0: all
+  std::vector<std::string> plugin_path;
+};
+
+/// One time-step limit and where it comes from.
+struct StepLimit {
+  std::string name, where;  // "Rayleigh", "calcine, smallest sphere 1.25 mm"
+  double seconds = 0;
+  bool binds = false;
+};
+
+class Simulation {
+ public:
+  /// Loads plugins, builds parts, materials, laws. Throws Error. [main]
+  Simulation(CaseFile input, const SimulationOptions& options);
+  ~Simulation();
+
+  const CaseSettings& settings() const;
+  const WorldView& world() const;
+  double time() const;
+  std::uint64_t step_count() const;
+  double time_step() const;
+  std::vector<StepLimit> step_limits() const;
+  bool finished() const;  // end time or end event reached
+
+  /// One time step. Throws Error(Fault::numerics) on a blow-up, a lost particle or a non-finite number, the world being
+  /// left as it was before the guard spoke.
+  void step();
+
+  std::vector<std::unique_ptr<Sensor>>& sensors();
+  std::vector<PluginProvenance> provenance() const;
+  /// Bytes of all arrays that grow with the number of particles and contacts.
+  std::size_t memory_bytes() const;
+  struct Counters {
+    std::uint64_t rebuilds = 0, pair_entries = 0, touching = 0, wall_entries = 0;
+    double seconds_neighbour = 0, seconds_contacts = 0, seconds_integrate = 0, seconds_other = 0;
+    double largest_overlap = 0;  // share of the radius, over the run
+  };
+  Counters counters() const;
+  /// Messages of the run log since the last call (events fired, sources exhausted, warnings).
+  std::vector<std::string> take_messages();
+
+  void save(StateWriter& out) const;
+  void load(const StateReader& in);
+  /// Hash of positions, velocities, spins, orientations by id, and contact history: equal bits give equal digests.
+  std::string digest() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace calx

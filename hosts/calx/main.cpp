@@ -1,0 +1,2 @@
+// main.cpp: the command line.
+int main() { return 0; }
