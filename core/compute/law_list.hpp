@@ -1,0 +1,57 @@
+// law_list.hpp: the laws of one ordered material pair and how a block of contacts goes through them.
+// Wrenches of a list add in its order; each law has its own pair row and its own history columns.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calx/contact_law.h"
+
+namespace calx {
+
+/// Rows of one block. Measured elsewhere and here: 64 to 512 are equally fast; all columns stay in the first-level cache.
+constexpr std::uint32_t kBlockRows = 256;
+/// Rows between two columns: eight more than the block, because columns a power of two apart share cache sets.
+constexpr std::uint32_t kBlockStride = kBlockRows + 8;
+
+struct LawTerm {
+  const calx_contact_law* table = nullptr;
+  std::string name, id;
+  std::vector<double> pair_row;   // for (i, j) in this order
+  std::uint32_t state_offset = 0; // first history column of this term
+};
+
+/// The laws between an ordered pair of materials.
+struct LawList {
+  std::vector<LawTerm> terms;
+  std::uint32_t needs = 0;
+  std::uint32_t state_count = 0;
+  std::string label;                   // "calcine-steel", for messages
+  std::vector<double> preset;          // per history column
+  std::vector<std::uint8_t> odd, keep; // per history column: changes sign with the order; survives separation
+  bool keeps_apart = false;
+};
+
+/// Work space of one thread for one block; about 200 kB with 32 history columns.
+struct BlockScratch {
+  explicit BlockScratch(std::uint32_t state_columns);
+  double* in(int column) { return data_.get() + column * kBlockStride; }
+  double* out(int column) { return data_.get() + (CALX_IN_COUNT + column) * kBlockStride; }
+  double* state(std::uint32_t column) { return data_.get() + (kFixedColumns + column) * kBlockStride; }
+  /// Rows in use, at most kBlockRows.
+  std::uint32_t count = 0;
+
+ private:
+  static constexpr std::uint32_t kFixedColumns = CALX_IN_COUNT + 2 * CALX_OUT_COUNT;
+  struct Free {
+    void operator()(double* p) const;
+  };
+  std::unique_ptr<double, Free> data_;
+  friend void evaluate_block(const LawList&, BlockScratch&, double, double, bool);
+};
+
+/// Evaluates scratch.count rows: reads in and state, writes out (0..5, and 6..9 when energy) and state. [worker]
+void evaluate_block(const LawList& list, BlockScratch& scratch, double dt, double time, bool energy);
+
+}  // namespace calx

@@ -1,0 +1,93 @@
+// pair_list.hpp: which spheres may touch before the next rebuild, in chunks, with the contact history of each pair.
+//
+// Entries stand in the order of rising (i, j) ranks, i < j. A chunk is a run of consecutive particles whose length
+// depends on the particle count alone, never on threads; a thread sums forces of a chunk's own entries directly, and
+// what leaves the chunk goes through slots that the receiving chunk adds in a fixed order. So sums have one order.
+//
+// Margins: each particle may move by its own margin before the list is stale; a fast particle gets a wide one, so that
+// a thin falling stream does not force a rebuild of the whole bed every few steps.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/column.hpp"
+#include "store/particles.hpp"
+
+namespace calx {
+
+/// Periodic box; only directions marked periodic wrap.
+struct Wrap {
+  Vec3 lo, length;  // m
+  std::array<bool, 3> periodic{false, false, false};
+  bool any() const { return periodic[0] || periodic[1] || periodic[2]; }
+  /// Shortest image of a difference of positions.
+  Vec3 nearest(Vec3 d) const {
+    for (int k = 0; k < 3; ++k)
+      if (periodic[static_cast<std::size_t>(k)]) {
+        if (d[k] > 0.5 * length[k]) d[k] -= length[k];
+        if (d[k] < -0.5 * length[k]) d[k] += length[k];
+      }
+    return d;
+  }
+};
+
+/// History columns of contacts: how to start, turn round and end a row.
+struct HistorySpec {
+  std::uint32_t columns = 0;  // the largest count over all law lists
+  std::vector<std::uint8_t> odd;  // changes sign when i and j trade places; per column
+};
+
+struct Chunk {
+  std::uint32_t first_particle = 0, last_particle = 0, first_sphere = 0, last_sphere = 0;
+  std::size_t first_entry = 0, last_entry = 0;
+  std::size_t first_slot = 0, last_slot = 0;  // of contributions that leave this chunk
+  struct Incoming {
+    std::size_t first = 0, last = 0;  // slots of another chunk meant for this one
+  };
+  std::vector<Incoming> incoming;  // in the order of the sending chunks
+};
+
+class PairList {
+ public:
+  std::vector<Chunk> chunks;
+  Column<std::uint32_t> i, j;       // sphere ranks
+  Column<std::uint8_t> touching;    // at the last evaluation
+  Column<double> history;           // column k of entry e at history[k * stride + e]
+  std::size_t stride = 0;
+  Column<std::uint32_t> cross;      // slot of the n-th entry of a chunk that leaves it, entries in order
+  std::vector<std::size_t> first_cross;  // per chunk, into cross
+  Column<std::uint32_t> slot_sphere;  // receiving sphere of each slot
+  Column<Wrench> slot_wrench;
+  Column<std::uint8_t> slot_used;
+  std::size_t entry_count() const { return i.size(); }
+
+  /// Builds the list for particles as they stand. margin: m, one per particle. old_rank: for each sphere its rank when
+  /// the present history was written, or 0xFFFFFFFF for a new sphere; null keeps ranks. Threads: OpenMP.
+  void build(const Particles& particles, const Wrap& wrap, const Column<double>& margin, double smallest_margin,
+             const HistorySpec& spec, const std::uint32_t* old_rank);
+  std::size_t memory_bytes() const;
+
+ private:
+  struct ChunkWork {
+    std::vector<std::uint32_t> partner, row_count;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> extra;
+  };
+  void make_chunks(const Particles& particles);
+  void link_chunks();
+  void carry_history(const HistorySpec& spec, const std::uint32_t* old_rank, const Column<std::size_t>& old_row,
+                     const Column<std::uint32_t>& old_j, const Column<std::uint8_t>& old_touching,
+                     const Column<double>& old_history, std::size_t old_stride);
+  Column<std::size_t> row_;  // first entry of each sphere; one more at the end
+  std::vector<ChunkWork> work_;
+  std::vector<std::uint32_t> cell_of_, cell_start_, binned_;
+  struct Binned {
+    double x, y, z, reach;
+  };
+  Column<Binned> packed_;
+};
+
+/// Order of particles along a Morton curve through cells of the size given, ties by present rank.
+std::vector<std::uint32_t> morton_order(const Particles& particles, double cell);
+
+}  // namespace calx

@@ -1,0 +1,348 @@
+// engine.cpp: order of the passes of a step, and when neighbour lists are rebuilt.
+#include "step/engine.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/error.hpp"
+#include "step/engine_detail.hpp"
+
+namespace calx {
+namespace {
+
+constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+/// Steps a list is meant to last for particles that keep their speed; see PairList about margins.
+constexpr double kListSteps = 40;
+/// Rebuilds between two reorderings along the Morton curve.
+constexpr std::uint64_t kSortEvery = 10;
+
+std::string format(const char* pattern, double a, double b, double c) {
+  char text[160];
+  std::snprintf(text, sizeof text, pattern, a, b, c);
+  return text;
+}
+
+}  // namespace
+
+Engine::Engine() = default;
+Engine::~Engine() = default;
+
+void Engine::prepare(int threads) {
+  threads_ = std::max(1, threads);
+  history_ = {};
+  for (const LawList* list : laws)
+    if (list && list->state_count > history_.columns) history_.columns = list->state_count;
+  history_.odd.assign(history_.columns, 0);
+  // A column may belong to different laws in different material pairs; a turn of i and j needs each pair's own flags
+  // only when the lists disagree, which a common flag table cannot express.
+  for (std::uint32_t k = 0; k < history_.columns; ++k) {
+    bool first = true;
+    for (const LawList* list : laws) {
+      if (!list || k >= list->state_count) continue;
+      if (!first && (list->odd[k] != 0) != (history_.odd[k] != 0))
+        throw Error(Fault::settings,
+                    "contacts: two material pairs use laws whose history column " + std::to_string(k + 1) +
+                        " differs in sign symmetry; name the laws of both pairs in the same order");
+      history_.odd[k] = list->odd[k];
+      first = false;
+    }
+  }
+  workers_.clear();
+  for (int k = 0; k < threads_; ++k) workers_.push_back(std::make_unique<Worker>(history_.columns));
+  part_bounds_.clear();
+  for (const auto& part : parts) part_bounds_.push_back(part.surface->bounds());
+  stale_ = true;
+}
+
+const LawList& Engine::law(std::uint32_t a, std::uint32_t b) const {
+  const LawList* list = laws[a * material_count + b];
+  if (!list) missing_law(a, b);
+  return *list;
+}
+
+void Engine::missing_law(std::uint32_t a, std::uint32_t b) const {
+  throw Error(Fault::settings, "/contacts: particles of \"" + material_names[a] + "\" touch \"" + material_names[b] +
+                                   "\" but no law is given between them; add {\"between\": [\"" + material_names[a] +
+                                   "\", \"" + material_names[b] + "\"], \"law\": ...}");
+}
+
+void Engine::inserted() {
+  list_rank_.resize(particles.sphere_count(), kNone);
+  reference_.resize(particles.sphere_count());
+  stale_ = count_changed_ = true;
+}
+
+void Engine::remove(const std::vector<std::uint8_t>& mark) {
+  Column<std::uint32_t> kept;
+  for (std::size_t k = 0; k < particles.sphere_count(); ++k)
+    if (!mark[particles.owner_of(k)]) kept.push_back(list_rank_[k]);
+  list_rank_.swap(kept);
+  particles.remove(mark);
+  reference_.resize(particles.sphere_count());
+  stale_ = count_changed_ = true;
+}
+
+void Engine::place_parts(double dt, std::vector<PartPlace>& places) {
+  places.resize(parts.size());
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const EnginePart& part = parts[k];
+    double speed = 0;
+    if (part.moves) {
+      const Box& b = part_bounds_[k];
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p{corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z};
+        speed = std::max(speed, norm(part.pose.velocity_at(part.pose.to_world(p))));
+      }
+    }
+    const double margin = part.moves ? std::clamp(kListSteps * dt * speed, smallest_margin_, largest_margin_) : 0;
+    places[k] = {part.surface, part.pose.turn, part.pose.shift, margin, part.present};
+  }
+}
+
+bool Engine::parts_left_margin() const {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const EnginePart& part = parts[k];
+    const PartPlace& place = places_[k];
+    if (part.present != place.present) return true;
+    if (!part.moves || !part.present) continue;
+    const Box& b = part_bounds_[k];
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p{corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z};
+      const Vec3 moved = part.pose.to_world(p) - (place.shift + rotate(place.turn, p));
+      if (norm2(moved) > place.margin * place.margin) return true;
+    }
+  }
+  return false;
+}
+
+void Engine::rebuild(double dt, bool reorder) {
+  const std::size_t spheres = particles.sphere_count();
+  if (options.wrap.any())
+    for (auto& b : particles.body)
+      for (int k = 0; k < 3; ++k) {
+        if (!options.wrap.periodic[static_cast<std::size_t>(k)]) continue;
+        double& x = k == 0 ? b.x : k == 1 ? b.y : b.z;
+        if (x < options.wrap.lo[k]) x += options.wrap.length[k];
+        if (x >= options.wrap.lo[k] + options.wrap.length[k]) x -= options.wrap.length[k];
+      }
+  if (particles.has_clumps && options.wrap.any()) particles.refresh_members(0, particles.count());
+
+  if (count_changed_) {
+    double smallest = 1e300, largest = 0;
+    const Record* s = particles.spheres();
+    for (std::size_t k = 0; k < spheres; ++k) {
+      smallest = std::min(smallest, s[k].r);
+      largest = std::max(largest, s[k].r);
+    }
+    smallest_margin_ = options.skin > 0 ? options.skin : 0.1 * smallest;
+    largest_margin_ = std::max(smallest, smallest_margin_);
+    cell_ = 2 * (largest + smallest_margin_);
+  }
+  if (reorder && particles.count() > 0) {
+    const auto order = morton_order(particles, cell_);
+    Column<std::uint32_t> ranks;
+    ranks.reserve(spheres);
+    for (const auto k : order) {
+      if (!particles.has_clumps) {
+        ranks.push_back(list_rank_[k]);
+        continue;
+      }
+      for (std::uint32_t m = particles.first_sphere[k]; m < particles.first_sphere[k + 1]; ++m)
+        ranks.push_back(list_rank_[m]);
+    }
+    list_rank_.swap(ranks);
+    particles.permute(order);
+    sorted_at_ = rebuilds_;
+  }
+  margin_.resize(particles.count());
+  for (std::size_t p = 0; p < particles.count(); ++p)
+    margin_[p] = std::clamp(kListSteps * dt * norm(velocity(particles.body[p])), smallest_margin_, largest_margin_);
+  pairs_.build(particles, options.wrap, margin_, smallest_margin_, history_, list_rank_.data());
+  place_parts(dt, places_);
+  walls_.build(particles, pairs_, places_, margin_, 1, history_, list_rank_.data());
+  const Record* s = particles.spheres();
+  for (std::uint32_t k = 0; k < spheres; ++k) {
+    list_rank_[k] = k;
+    reference_[k] = position(s[k]);
+  }
+  sphere_wrench_.resize(spheres);
+  sum_.resize(particles.count());
+  results_.resize(pairs_.chunks.size());
+  ++rebuilds_;
+  stale_ = count_changed_ = false;
+}
+
+void Engine::rebuild_if_stale(double dt) {
+  const double start = now_seconds();
+  if (stale_) {
+    rebuild(dt, count_changed_ || rebuilds_ - sorted_at_ >= kSortEvery);
+  } else if (parts_left_margin()) {
+    place_parts(dt, places_);
+    walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
+  }
+  times_.neighbour += now_seconds() - start;
+}
+
+void Engine::begin(double dt) {
+  if (!options.verlet) return;
+  if (stale_) rebuild(dt, count_changed_);
+  const double start = now_seconds();
+  for (auto& r : results_) r.gravity_work = 0, r.stale = false;
+#pragma omp parallel for schedule(static) num_threads(threads_)
+  for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
+    drift_verlet(c, dt);
+    guard_pass(c);
+  }
+  for (auto& r : results_) {
+    stale_ |= r.stale;
+    energy_.gravity_work += r.gravity_work;
+    r.outside.clear();
+  }
+  times_.integrate += now_seconds() - start;
+}
+
+GuardReport Engine::finish(double t, double dt) {
+  omp_set_num_threads(threads_);
+  rebuild_if_stale(dt);
+  const double start = now_seconds();
+  for (auto& r : results_) {
+    r.elastic = r.friction = r.damping = r.plastic = r.wall_work = r.force_work = 0;
+    r.kinetic_translation = r.kinetic_rotation = r.gravity = r.gravity_work = r.largest_overlap = 0;
+    r.touching = 0;
+    r.stale = r.bad = false;
+    r.outside.clear();
+  }
+  double contacts_done = start;
+  const std::size_t chunk_count = pairs_.chunks.size();
+  std::exception_ptr failure;
+#pragma omp parallel num_threads(threads_)
+  {
+    Worker& worker = *workers_[static_cast<std::size_t>(omp_get_thread_num())];
+#pragma omp for schedule(dynamic, 1)
+    for (std::size_t c = 0; c < chunk_count; ++c) {
+      // Only a missing law throws; it must not leave the parallel region.
+      try {
+        pair_pass(c, worker, t, dt);
+        wall_pass(c, worker, t, dt);
+      } catch (...) {
+#pragma omp critical
+        failure = std::current_exception();
+      }
+    }
+#pragma omp single
+    contacts_done = now_seconds();
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < chunk_count; ++c) {
+      sum_pass(c);
+      if (!forces.empty()) force_pass(c, worker, t, dt);
+      if (options.verlet) {
+        finish_verlet(c, dt);
+      } else {
+        integrate_euler(c, dt);
+      }
+      const Chunk& chunk = pairs_.chunks[c];
+      std::copy(sum_.begin() + chunk.first_particle, sum_.begin() + chunk.last_particle,
+                particles.wrench.begin() + chunk.first_particle);
+      guard_pass(c);
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+  times_.contacts += contacts_done - start;
+
+  GuardReport report;
+  energy_.kinetic_translation = energy_.kinetic_rotation = energy_.gravity = energy_.elastic = 0;
+  touching_ = 0;
+  double worst = 0;
+  const ChunkResult* worst_chunk = nullptr;
+  std::vector<Wrench> load(parts.size());
+  for (const auto& r : results_) {
+    energy_.kinetic_translation += r.kinetic_translation;
+    energy_.kinetic_rotation += r.kinetic_rotation;
+    energy_.gravity += r.gravity;
+    energy_.elastic += r.elastic;
+    energy_.friction += r.friction;
+    energy_.damping += r.damping;
+    energy_.plastic += r.plastic;
+    energy_.wall_work += r.wall_work;
+    energy_.force_work += r.force_work;
+    energy_.gravity_work += r.gravity_work;
+    touching_ += r.touching;
+    stale_ |= r.stale;
+    if (r.largest_overlap > worst) {
+      worst = r.largest_overlap;
+      worst_chunk = &r;
+    }
+    report.outside.insert(report.outside.end(), r.outside.begin(), r.outside.end());
+    for (std::size_t k = 0; k < load.size(); ++k) {
+      load[k].fx += r.load[k].fx;
+      load[k].fy += r.load[k].fy;
+      load[k].fz += r.load[k].fz;
+      load[k].tx += r.load[k].tx;
+      load[k].ty += r.load[k].ty;
+      load[k].tz += r.load[k].tz;
+    }
+    if (r.bad && report.message.empty()) {
+      const Record& b = particles.body[r.bad_particle];
+      report.message = "non-finite motion of particle " + std::to_string(particles.id[r.bad_particle]) +
+                       format(", last position (%.6g, %.6g, %.6g) m", b.x, b.y, b.z) +
+                       "; the time step is too large or a law returned a non-finite force";
+    }
+  }
+  for (std::size_t k = 0; k < load.size(); ++k) {
+    parts[k].force = {load[k].fx, load[k].fy, load[k].fz};
+    parts[k].torque = {load[k].tx, load[k].ty, load[k].tz};
+  }
+  largest_overlap_ = std::max(largest_overlap_, worst);
+  if (report.message.empty() && worst > options.overlap_limit) {
+    const std::uint32_t i = worst_chunk->overlap_i, j = worst_chunk->overlap_j;
+    const Record& b = particles.spheres()[i];
+    const bool wall = ~j < parts.size() && j >= particles.sphere_count();
+    report.message = "overlap of " + format("%.3g of the radius at (%.4g, %.4g, ", worst, b.x, b.y) +
+                     format("%.4g) m", b.z, 0, 0) + ", particle " + std::to_string(particles.id[particles.owner_of(i)]) +
+                     (wall ? " with part number " + std::to_string(~j)
+                           : " with particle " + std::to_string(particles.id[particles.owner_of(j)])) +
+                     format("; the limit is %.3g (\"overlap_limit\"): a time step too large, too soft a material, or a "
+                            "particle squeezed between parts",
+                            options.overlap_limit, 0, 0);
+  }
+  times_.integrate += now_seconds() - contacts_done;
+  return report;
+}
+
+std::vector<Engine::Touch> Engine::touches() const {
+  std::vector<Touch> out;
+  const Record* s = particles.spheres();
+  for (std::size_t e = 0; e < pairs_.entry_count(); ++e) {
+    const std::uint32_t i = pairs_.i[e], j = pairs_.j[e];
+    const Vec3 d = options.wrap.nearest(position(s[i]) - position(s[j]));
+    const double distance = norm(d), overlap = s[i].r + s[j].r - distance;
+    if (overlap > 0) out.push_back({i, j, -1, d / distance, overlap});
+  }
+  for (std::size_t row = 0; row < walls_.row_count(); ++row) {
+    const EnginePart& part = parts[walls_.part[row]];
+    const Record& a = s[walls_.sphere[row]];
+    SurfacePoint found[kWallContacts];
+    const std::uint32_t first = walls_.first_element[row];
+    const std::size_t n = part.surface->closest(part.pose.to_part(position(a)), a.r, walls_.elements.data() + first,
+                                                walls_.first_element[row + 1] - first, found, kWallContacts);
+    for (std::size_t k = 0; k < n; ++k)
+      out.push_back({walls_.sphere[row], 0, static_cast<int>(walls_.part[row]), rotate(part.pose.turn, found[k].normal),
+                     a.r - found[k].distance});
+  }
+  return out;
+}
+
+std::size_t Engine::memory_bytes() const {
+  const Particles& p = particles;
+  std::size_t bytes = pairs_.memory_bytes() + walls_.memory_bytes();
+  bytes += (p.body.capacity() + p.member.capacity()) * sizeof(Record) + p.turn.capacity() * sizeof(Quat);
+  bytes += (p.wrench.capacity() + sphere_wrench_.capacity() + sum_.capacity()) * sizeof(Wrench);
+  bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() + p.owner.capacity() +
+            p.sphere_id.capacity() + list_rank_.capacity()) *
+           4;
+  return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + reference_.capacity() * sizeof(Vec3);
+}
+
+}  // namespace calx

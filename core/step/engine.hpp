@@ -1,0 +1,157 @@
+// engine.hpp: one time step of the world: contacts, sums in a fixed order, integration, guards.
+//
+// Every pass runs over fixed chunks of particles; each chunk's result depends on its inputs alone, so the same bits come
+// out for any number of threads. The law sees positions and velocities of the same instant:
+//   euler (semi-implicit): forces at t(n) from x(n), v(n), then v(n+1) = v + a dt, x(n+1) = x + v(n+1) dt;
+//   verlet: x(n+1) from v(n+1/2), forces at t(n+1) from x(n+1) and the predicted v(n+1), then v(n+1).
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calx/particle_force.h"
+#include "compute/law_list.hpp"
+#include "geometry/geometry.hpp"
+#include "motion/motion.hpp"
+#include "neighbour/pair_list.hpp"
+#include "neighbour/wall_list.hpp"
+#include "store/particles.hpp"
+
+namespace calx {
+
+/// A wall part in the world.
+struct EnginePart {
+  const Surface* surface = nullptr;
+  std::uint32_t material = 0;
+  bool present = true;
+  bool moves = false;
+  Pose pose;           // at the instant of the contacts
+  Vec3 force, torque;  // N, N m about the pivot, by particles on the part, of the last step
+};
+
+struct EngineForce {
+  const calx_particle_force* table = nullptr;
+  const calx_instance* instance = nullptr;
+};
+
+struct EngineOptions {
+  Vec3 gravity;
+  Wrap wrap;
+  Box domain;
+  bool verlet = false;
+  bool ledger = false;
+  double skin = 0;           // m, smallest margin of a particle; 0: 0.1 of the smallest radius
+  double overlap_limit = 0.5; // of the radius
+};
+
+/// Energies at the instant of the last contacts, J, and what has been lost or put in since the start.
+struct EngineEnergy {
+  double kinetic_translation = 0, kinetic_rotation = 0, gravity = 0, elastic = 0;
+  double friction = 0, damping = 0, plastic = 0, wall_work = 0, force_work = 0, gravity_work = 0;
+};
+
+struct EngineTimes {
+  double neighbour = 0, contacts = 0, integrate = 0;  // s of wall time
+};
+
+/// What a guard found; message names particle and numbers. Empty: all is well.
+struct GuardReport {
+  std::string message;
+  std::vector<std::uint32_t> outside;  // ranks of particles beyond the domain
+};
+
+class Engine {
+ public:
+  Engine();
+  ~Engine();
+  Particles particles;
+  std::vector<EnginePart> parts;
+  std::vector<EngineForce> forces;
+  EngineOptions options;
+  /// Laws of the ordered material pair (a, b) at [a * material_count + b]; null where the case gives none.
+  std::vector<const LawList*> laws;
+  std::uint32_t material_count = 0;
+  std::vector<std::string> material_names;
+
+  /// Sizes work spaces. Call once materials, laws and parts are known, before the first step.
+  void prepare(int threads);
+  /// First half of a step: verlet moves particles to t + dt; euler does nothing.
+  void begin(double dt);
+  /// Second half: list check, contacts at time t (parts must hold their poses of t), sums, integration.
+  GuardReport finish(double t, double dt);
+
+  /// Tells the engine that particles were appended since the last step.
+  void inserted();
+  /// Removes the particles marked (rank order).
+  void remove(const std::vector<std::uint8_t>& mark);
+  /// The list is built anew before the next contacts (a part appeared, vanished or jumped).
+  void invalidate() { stale_ = true; }
+
+  const PairList& pairs() const { return pairs_; }
+  const WallList& walls() const { return walls_; }
+  const EngineEnergy& energy() const { return energy_; }
+  const EngineTimes& times() const { return times_; }
+  std::uint64_t rebuilds() const { return rebuilds_; }
+  std::uint64_t touching() const { return touching_; }
+  double largest_overlap() const { return largest_overlap_; }  // share of the radius, over the run
+  std::size_t memory_bytes() const;
+  std::uint32_t history_columns() const { return history_.columns; }
+
+  /// Text that says what each history column is, per material pair; a checkpoint of another layout is refused.
+  std::string history_layout() const;
+  void save(StateWriter& out) const;
+  void load(const StateReader& in);
+
+  /// Contacts of the last step with forces are recomputed for output only: geometry now, history as it stands.
+  struct Touch {
+    std::uint32_t i, j;
+    int part;
+    Vec3 normal;  // towards i
+    double overlap;
+  };
+  std::vector<Touch> touches() const;
+
+ private:
+  struct Worker;
+  struct ChunkResult;
+  void rebuild_if_stale(double dt);
+  void rebuild(double dt, bool reorder);
+  void place_parts(double dt, std::vector<PartPlace>& places);
+  bool parts_left_margin() const;
+  void pair_pass(std::size_t chunk, Worker& worker, double t, double dt);
+  void evaluate_pairs(std::size_t chunk, Worker& worker, const LawList& list, std::uint32_t count, double t, double dt);
+  void wall_pass(std::size_t chunk, Worker& worker, double t, double dt);
+  void evaluate_walls(std::size_t chunk, Worker& worker, const LawList& list, double t, double dt);
+  void sum_pass(std::size_t chunk);
+  void force_pass(std::size_t chunk, Worker& worker, double t, double dt);
+  void integrate_euler(std::size_t chunk, double dt);
+  void drift_verlet(std::size_t chunk, double dt);
+  void finish_verlet(std::size_t chunk, double dt);
+  void guard_pass(std::size_t chunk);
+  const LawList& law(std::uint32_t a, std::uint32_t b) const;
+  [[noreturn]] void missing_law(std::uint32_t a, std::uint32_t b) const;
+
+  PairList pairs_;
+  WallList walls_;
+  HistorySpec history_;
+  Column<Wrench> sphere_wrench_;
+  Column<Wrench> sum_;                  // per particle, of this step
+  Column<double> margin_;               // per particle, m
+  Column<Vec3> reference_;              // per sphere, position when the pair list was built
+  Column<std::uint32_t> list_rank_;     // per sphere, its rank in the present list
+  std::vector<PartPlace> places_;       // parts when the wall list was built
+  std::vector<ChunkResult> results_;
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::vector<Box> part_bounds_;
+  EngineEnergy energy_;
+  EngineTimes times_;
+  bool stale_ = true, uniform_ = false;
+  double smallest_margin_ = 0, largest_margin_ = 0, cell_ = 0;
+  std::uint64_t rebuilds_ = 0, sorted_at_ = 0, touching_ = 0;
+  bool count_changed_ = true;
+  double largest_overlap_ = 0;
+  int threads_ = 1;
+};
+
+}  // namespace calx

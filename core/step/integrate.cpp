@@ -1,0 +1,238 @@
+// integrate.cpp: sums of wrenches per particle, particle forces, and the two integrators.
+#include "step/engine_detail.hpp"
+
+namespace calx {
+namespace {
+
+/// Turns q by spin w over dt: Cayley's map, exact to third order in w dt, built from + - * / and sqrt.
+Quat turned(const Quat& q, const Vec3& w, double dt) {
+  const Quat step{1, 0.5 * dt * w.x, 0.5 * dt * w.y, 0.5 * dt * w.z};
+  return normalized(step * q);
+}
+
+/// Angular momentum from spin, and back, world frame; i: principal moments.
+Vec3 momentum(const Quat& q, const Vec3& i, const Vec3& w) {
+  const Vec3 b = rotate(conjugate(q), w);
+  return rotate(q, {i.x * b.x, i.y * b.y, i.z * b.z});
+}
+Vec3 spin_of(const Quat& q, const Vec3& i, const Vec3& l) {
+  const Vec3 b = rotate(conjugate(q), l);
+  return rotate(q, {b.x / i.x, b.y / i.y, b.z / i.z});
+}
+
+/// Turns a free body of angular momentum l over dt by the midpoint rule; l is kept exactly.
+void turn_body(Quat& q, const Vec3& i, const Vec3& l, double dt) {
+  const Quat half = turned(q, spin_of(q, i, l), 0.5 * dt);
+  q = turned(q, spin_of(half, i, l), dt);
+}
+
+void set_velocity(Record& b, const Vec3& v) {
+  b.vx = v.x;
+  b.vy = v.y;
+  b.vz = v.z;
+}
+void set_spin(Record& b, const Vec3& w) {
+  b.wx = w.x;
+  b.wy = w.y;
+  b.wz = w.z;
+}
+void move(Record& b, const Vec3& v, double dt) {
+  b.x += v.x * dt;
+  b.y += v.y * dt;
+  b.z += v.z * dt;
+}
+Vec3 force_of(const Wrench& w) { return {w.fx, w.fy, w.fz}; }
+Vec3 torque_of(const Wrench& w) { return {w.tx, w.ty, w.tz}; }
+
+}  // namespace
+
+void Engine::sum_pass(std::size_t c) {
+  const Chunk& chunk = pairs_.chunks[c];
+  for (const auto& in : chunk.incoming)
+    for (std::size_t slot = in.first; slot < in.last; ++slot) {
+      if (!pairs_.slot_used[slot]) continue;
+      Wrench& a = sphere_wrench_[pairs_.slot_sphere[slot]];
+      const Wrench& b = pairs_.slot_wrench[slot];
+      a.fx += b.fx;
+      a.fy += b.fy;
+      a.fz += b.fz;
+      a.tx += b.tx;
+      a.ty += b.ty;
+      a.tz += b.tz;
+    }
+  if (!particles.has_clumps) {
+    std::copy(sphere_wrench_.begin() + chunk.first_particle, sphere_wrench_.begin() + chunk.last_particle,
+              sum_.begin() + chunk.first_particle);
+    return;
+  }
+  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    Wrench sum;
+    const Vec3 centre = position(particles.body[p]);
+    for (std::uint32_t k = particles.first_sphere[p]; k < particles.first_sphere[p + 1]; ++k) {
+      const Wrench& w = sphere_wrench_[k];
+      const Vec3 t = cross(position(particles.member[k]) - centre, force_of(w));
+      sum.fx += w.fx;
+      sum.fy += w.fy;
+      sum.fz += w.fz;
+      sum.tx += w.tx + t.x;
+      sum.ty += w.ty + t.y;
+      sum.tz += w.tz + t.z;
+    }
+    sum_[p] = sum;
+  }
+}
+
+void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
+  const Chunk& chunk = pairs_.chunks[c];
+  const std::uint32_t n = chunk.last_particle - chunk.first_particle;
+  constexpr int kColumns = 17;
+  w.columns.resize(static_cast<std::size_t>(kColumns) * n);
+  double* column[kColumns];
+  for (int k = 0; k < kColumns; ++k) column[k] = w.columns.data() + static_cast<std::size_t>(k) * n;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t p = chunk.first_particle + k;
+    const Record& b = particles.body[p];
+    const double values[11] = {b.x, b.y, b.z, b.vx, b.vy, b.vz, b.wx, b.wy, b.wz, b.m, particles.equal_radius(p)};
+    for (int m = 0; m < 11; ++m) column[m][k] = values[m];
+    for (int m = 11; m < kColumns; ++m) column[m][k] = 0;
+  }
+  calx_particle_block block{};
+  block.struct_size = sizeof block;
+  block.count = n;
+  block.dt = dt;
+  block.time = t;
+  const double** in[] = {&block.x,  &block.y,  &block.z,  &block.vx,   &block.vy,    &block.vz,
+                         &block.wx, &block.wy, &block.wz, &block.mass, &block.radius};
+  for (int m = 0; m < 11; ++m) *in[m] = column[m];
+  double** out[] = {&block.fx, &block.fy, &block.fz, &block.mx, &block.my, &block.mz};
+  for (int m = 0; m < 6; ++m) *out[m] = column[11 + m];
+  for (const auto& force : forces) force.table->eval(force.instance, &block);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const Record& b = particles.body[chunk.first_particle + k];
+    Wrench& sum = sum_[chunk.first_particle + k];
+    const Wrench add{column[11][k], column[12][k], column[13][k], column[14][k], column[15][k], column[16][k]};
+    results_[c].force_work += (dot(force_of(add), velocity(b)) + dot(torque_of(add), spin(b))) * dt;
+    sum.fx += add.fx;
+    sum.fy += add.fy;
+    sum.fz += add.fz;
+    sum.tx += add.tx;
+    sum.ty += add.ty;
+    sum.tz += add.tz;
+  }
+}
+
+void Engine::integrate_euler(std::size_t c, double dt) {
+  const Chunk& chunk = pairs_.chunks[c];
+  ChunkResult& result = results_[c];
+  const Vec3 g = options.gravity;
+  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    Record& b = particles.body[p];
+    const Wrench& sum = sum_[p];
+    if (options.ledger) {
+      // Velocities of euler stand half a step from positions, so energy at this instant is the mean of both sides.
+      result.kinetic_translation += 0.25 * b.m * norm2(velocity(b));
+      result.kinetic_rotation += 0.5 * (particles.kinetic_energy(p) - 0.5 * b.m * norm2(velocity(b)));
+      result.gravity -= b.m * dot(g, position(b));
+    }
+    const double f = dt / b.m;
+    const Vec3 v{b.vx + (f * sum.fx + g.x * dt), b.vy + (f * sum.fy + g.y * dt), b.vz + (f * sum.fz + g.z * dt)};
+    set_velocity(b, v);
+    move(b, v, dt);
+    result.gravity_work += b.m * dot(g, v) * dt;
+    if (b.aux > 0) {
+      set_spin(b, spin(b) + dt * b.aux * torque_of(sum));
+    } else {
+      const Vec3 i = particles.inertia(p);
+      Quat& q = particles.turn[p];
+      const Vec3 l = momentum(q, i, spin(b)) + dt * torque_of(sum);
+      turn_body(q, i, l, dt);
+      set_spin(b, spin_of(q, i, l));
+    }
+    if (options.ledger) {
+      result.kinetic_translation += 0.25 * b.m * norm2(velocity(b));
+      result.kinetic_rotation += 0.5 * (particles.kinetic_energy(p) - 0.5 * b.m * norm2(velocity(b)));
+    }
+  }
+  if (particles.has_clumps) particles.refresh_members(chunk.first_particle, chunk.last_particle);
+}
+
+void Engine::drift_verlet(std::size_t c, double dt) {
+  const Chunk& chunk = pairs_.chunks[c];
+  const Vec3 g = options.gravity;
+  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    Record& b = particles.body[p];
+    const Wrench& old = particles.wrench[p];
+    const Vec3 kick = 0.5 * dt * ((1 / b.m) * force_of(old) + g);
+    const Vec3 half = velocity(b) + kick;
+    move(b, half, dt);
+    // The law sees the velocity predicted for the new instant; finish_verlet puts the true one in its place.
+    set_velocity(b, half + kick);
+    results_[c].gravity_work += b.m * dot(g, half) * dt;
+    if (b.aux > 0) {
+      set_spin(b, spin(b) + dt * b.aux * torque_of(old));
+      continue;
+    }
+    const Vec3 i = particles.inertia(p);
+    Quat& q = particles.turn[p];
+    const Vec3 half_torque = 0.5 * dt * torque_of(old);
+    const Vec3 l = momentum(q, i, spin(b)) + half_torque;
+    turn_body(q, i, l, dt);
+    set_spin(b, spin_of(q, i, l + half_torque));
+  }
+  if (particles.has_clumps) particles.refresh_members(chunk.first_particle, chunk.last_particle);
+}
+
+void Engine::finish_verlet(std::size_t c, double dt) {
+  const Chunk& chunk = pairs_.chunks[c];
+  ChunkResult& result = results_[c];
+  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    Record& b = particles.body[p];
+    const Wrench& old = particles.wrench[p];
+    const Wrench& now = sum_[p];
+    set_velocity(b, velocity(b) + 0.5 * dt / b.m * (force_of(now) - force_of(old)));
+    const Vec3 change = 0.5 * dt * (torque_of(now) - torque_of(old));
+    if (b.aux > 0) {
+      set_spin(b, spin(b) + b.aux * change);
+    } else {
+      const Vec3 i = particles.inertia(p);
+      const Quat& q = particles.turn[p];
+      set_spin(b, spin_of(q, i, momentum(q, i, spin(b)) + change));
+    }
+    if (!options.ledger) continue;
+    const double translation = 0.5 * b.m * norm2(velocity(b));
+    result.kinetic_translation += translation;
+    result.kinetic_rotation += particles.kinetic_energy(p) - translation;
+    result.gravity -= b.m * dot(options.gravity, position(b));
+  }
+  if (particles.has_clumps) particles.refresh_members(chunk.first_particle, chunk.last_particle);
+}
+
+void Engine::guard_pass(std::size_t c) {
+  const Chunk& chunk = pairs_.chunks[c];
+  ChunkResult& result = results_[c];
+  const Box& box = options.domain;
+  const auto& periodic = options.wrap.periodic;
+  const Record* s = particles.spheres();
+  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    const Record& b = particles.body[p];
+    const double size = std::fabs(b.x) + std::fabs(b.y) + std::fabs(b.z) + std::fabs(b.vx) + std::fabs(b.vy) +
+                        std::fabs(b.vz) + std::fabs(b.wx) + std::fabs(b.wy) + std::fabs(b.wz);
+    // Written so that a NaN counts as bad.
+    if (!(size < 1e30)) {
+      if (!result.bad) result.bad_particle = p;
+      result.bad = true;
+      continue;
+    }
+    const bool inside = (periodic[0] || (b.x >= box.lo.x && b.x <= box.hi.x)) &&
+                        (periodic[1] || (b.y >= box.lo.y && b.y <= box.hi.y)) &&
+                        (periodic[2] || (b.z >= box.lo.z && b.z <= box.hi.z));
+    if (!inside) result.outside.push_back(p);
+    const double limit = margin_[p] * margin_[p];
+    const std::uint32_t first = particles.has_clumps ? particles.first_sphere[p] : p;
+    const std::uint32_t last = particles.has_clumps ? particles.first_sphere[p + 1] : p + 1;
+    for (std::uint32_t k = first; k < last; ++k)
+      result.stale |= norm2(position(s[k]) - reference_[k]) > limit;
+  }
+}
+
+}  // namespace calx
