@@ -29,8 +29,7 @@ struct LawList {
   std::uint32_t state_count = 0;
   std::string label;                   // "calcine-steel", for messages
   std::vector<double> preset;          // per history column
-  std::vector<std::uint8_t> odd, keep; // per history column: changes sign with the order; survives separation
-  bool keeps_apart = false;
+  std::vector<std::uint8_t> odd;       // per history column: changes sign when i and j trade places
 };
 
 /// Work space of one thread for one block; about 200 kB with 32 history columns.

@@ -23,7 +23,6 @@ struct ContactRow {
   int part = -1;
   double overlap = 0;          // m
   Vec3 normal;                 // from j (or the wall) to i
-  Vec3 force;                  // N, on i, of the last step
 };
 
 /// Energies of the whole run, J. remainder = initial + inserted + wall_work - removed - (kinetic + gravity + elastic +

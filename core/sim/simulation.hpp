@@ -35,6 +35,8 @@ class Simulation {
   std::uint64_t step_count() const;
   double time_step() const;
   std::vector<StepLimit> step_limits() const;
+  /// Law parameters the case left to their presets, one line each.
+  std::vector<std::string> presets() const;
   bool finished() const;  // end time or end event reached
 
   /// One time step. Throws Error(Fault::numerics) on a blow-up, a lost particle or a non-finite number, the world being

@@ -74,14 +74,15 @@ void Engine::inserted() {
   stale_ = count_changed_ = true;
 }
 
-void Engine::remove(const std::vector<std::uint8_t>& mark) {
+void Engine::remove(const std::vector<std::uint8_t>& mark, double dt) {
   Column<std::uint32_t> kept;
   for (std::size_t k = 0; k < particles.sphere_count(); ++k)
     if (!mark[particles.owner_of(k)]) kept.push_back(list_rank_[k]);
   list_rank_.swap(kept);
   particles.remove(mark);
   reference_.resize(particles.sphere_count());
-  stale_ = count_changed_ = true;
+  count_changed_ = true;
+  rebuild(dt, true);
 }
 
 void Engine::place_parts(double dt, std::vector<PartPlace>& places) {
@@ -139,6 +140,8 @@ void Engine::rebuild(double dt, bool reorder) {
     smallest_margin_ = options.skin > 0 ? options.skin : 0.1 * smallest;
     largest_margin_ = std::max(smallest, smallest_margin_);
     cell_ = 2 * (largest + smallest_margin_);
+    uniform_ = std::all_of(particles.material.begin(), particles.material.end(),
+                           [&](std::uint32_t m) { return m == particles.material[0]; });
   }
   if (reorder && particles.count() > 0) {
     const auto order = morton_order(particles, cell_);

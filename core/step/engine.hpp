@@ -83,10 +83,8 @@ class Engine {
 
   /// Tells the engine that particles were appended since the last step.
   void inserted();
-  /// Removes the particles marked (rank order).
-  void remove(const std::vector<std::uint8_t>& mark);
-  /// The list is built anew before the next contacts (a part appeared, vanished or jumped).
-  void invalidate() { stale_ = true; }
+  /// Removes the particles marked (rank order) and builds the lists anew.
+  void remove(const std::vector<std::uint8_t>& mark, double dt);
 
   const PairList& pairs() const { return pairs_; }
   const WallList& walls() const { return walls_; }

@@ -1,0 +1,344 @@
+// simulation.cpp: from a case to a world, and the order of a step.
+#include "sim/simulation.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "base/sha256.hpp"
+#include "base/units.hpp"
+#include "sim/time_step.hpp"
+#include "sim/world.hpp"
+
+namespace calx {
+namespace {
+
+/// Conditions that look at particles are asked this often, s: short against a process, long against a step.
+constexpr double kEventInterval = 2e-3;
+
+std::uint32_t index_of(const std::vector<MaterialSettings>& materials, const std::string& name) {
+  for (std::uint32_t k = 0; k < materials.size(); ++k)
+    if (materials[k].name == name) return k;
+  throw std::logic_error("material " + name);
+}
+
+void build_shapes(World& w) {
+  Particles& p = w.engine.particles;
+  for (const auto& s : w.c.shapes) {
+    std::vector<Shape::Member> members;
+    for (const auto& m : s.spheres) members.push_back({m.at, m.radius});
+    try {
+      p.shapes.push_back(make_shape(s.name, members));
+    } catch (const std::invalid_argument& e) {
+      throw Error(Fault::settings, w.c.file + " " + s.pointer + ": " + e.what());
+    }
+    p.has_clumps |= !p.shapes.back().single();
+  }
+  for (const auto& m : w.c.materials) p.density.push_back(m.density);
+}
+
+void build_motions(World& w) {
+  for (const auto& m : w.c.motions) {
+    InstancePtr instance = w.registry->create(m.plugin, CALX_MOTION, m.parameters, w.c.file);
+    int carrier = -1;
+    for (std::size_t k = 0; k < w.c.motions.size(); ++k)
+      if (w.c.motions[k].name == m.carried_by) carrier = static_cast<int>(k);
+    const auto& table = *static_cast<const calx_motion*>(instance->table(CALX_MOTION));
+    bool waits = !m.start.empty();
+    for (const auto& stage : w.c.stages)
+      waits |= std::find(stage.start.begin(), stage.start.end(), m.name) != stage.start.end();
+    w.motions.add(m.name, &table, instance->get(), waits, carrier);
+    w.motion_instances.push_back(std::move(instance));
+  }
+}
+
+void build_parts(World& w) {
+  for (const auto& part : w.c.parts) {
+    WorldPart wall;
+    wall.instance = w.registry->create(part.geometry, CALX_GEOMETRY, part.parameters, w.c.file);
+    const auto& table = *static_cast<const calx_geometry*>(wall.instance->table(CALX_GEOMETRY));
+    wall.surface = std::make_unique<Surface>(
+        Surface::build(table, wall.instance->get(), wall.instance->host(), w.c.file + " " + part.pointer));
+    wall.motion = part.motion.empty() ? -1 : w.motions.find(part.motion);
+    EnginePart e;
+    e.surface = wall.surface.get();
+    e.material = index_of(w.c.materials, part.material);
+    e.present = part.present;
+    w.engine.parts.push_back(e);
+    w.walls.push_back(std::move(wall));
+  }
+}
+
+/// A bound of the speed of particles from gravity and the drop a case allows: from the highest source to the lowest
+/// place of any part, or the whole domain.
+double fall_speed(const World& w) {
+  const double g = norm(w.c.gravity);
+  double speed = 0;
+  if (g > 0) {
+    const Vec3 down = w.c.gravity / g;
+    double top = 1e300, bottom = -1e300;
+    auto grow = [&](const Box& b, double& low, double& high) {
+      for (int corner = 0; corner < 8; ++corner) {
+        const double h = dot(down, {corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z});
+        low = std::min(low, h);
+        high = std::max(high, h);
+      }
+    };
+    double ignore = -1e300;
+    for (const auto& s : w.c.sources)
+      if (s.positions.empty() && s.file.empty()) grow(s.region.bounds(), top, ignore);
+    for (const auto& s : w.c.sources)
+      for (const auto& x : s.positions) top = std::min(top, dot(down, x));
+    ignore = 1e300;
+    for (const auto& wall : w.walls) grow(wall.surface->bounds(), ignore, bottom);
+    if (bottom > top) speed = std::sqrt(2 * g * (bottom - top));
+  }
+  double thrown = 0;
+  for (const auto& s : w.c.sources) {
+    thrown = std::max(thrown, norm(s.velocity));
+    for (const auto& v : s.velocities) thrown = std::max(thrown, norm(v));
+  }
+  return std::sqrt(speed * speed + thrown * thrown);
+}
+
+StepInputs step_inputs(const World& w) {
+  StepInputs in;
+  in.settings = &w.c;
+  in.laws = &w.laws;
+  in.shapes = &w.engine.particles.shapes;
+  for (std::size_t k = 0; k < w.walls.size(); ++k) {
+    if (w.walls[k].motion < 0) continue;
+    const Vec3 pivot = w.motions.pose(w.walls[k].motion, 0).centre;
+    const Box b = w.walls[k].surface->bounds();
+    double radius = 0;
+    for (int corner = 0; corner < 8; ++corner)
+      radius = std::max(radius, norm(Vec3{corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y,
+                                          corner & 4 ? b.hi.z : b.lo.z} - pivot));
+    const double speed = w.motions.top_speed(w.walls[k].motion, radius);
+    if (speed > in.wall_speed) {
+      in.wall_speed = speed;
+      in.fastest_part = w.c.parts[k].name;
+    }
+  }
+  in.particle_speed = std::max(fall_speed(w), in.wall_speed);
+  return in;
+}
+
+void build_engine(World& w, int threads) {
+  Engine& e = w.engine;
+  const CaseSettings& c = w.c;
+  e.options.gravity = c.gravity;
+  e.options.domain = c.domain.box;
+  e.options.wrap = {c.domain.box.lo, c.domain.box.hi - c.domain.box.lo, c.domain.periodic};
+  e.options.verlet = c.time.integrator == TimeSettings::Integrator::verlet;
+  e.options.ledger = c.energy_ledger;
+  e.options.skin = c.neighbour.skin;
+  e.options.overlap_limit = c.overlap_limit;
+  e.laws = w.laws.matrix;
+  e.material_count = static_cast<std::uint32_t>(c.materials.size());
+  for (const auto& m : c.materials) e.material_names.push_back(m.name);
+  for (const auto& f : c.forces) {
+    InstancePtr instance = w.registry->create(f.plugin, CALX_PARTICLE_FORCE, f.parameters, c.file);
+    e.forces.push_back({static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get()});
+    w.force_instances.push_back(std::move(instance));
+  }
+  e.prepare(threads);
+}
+
+void build_sensors(World& w) {
+  for (const auto& s : w.c.sensors) {
+    if (is_builtin_sensor(s.kind)) {
+      w.sensors.push_back(make_sensor(s, w.c));
+      continue;
+    }
+    std::vector<std::string> ours{"name", "kind", "plugin", "every"};
+    InstancePtr instance = w.registry->create(s.kind, CALX_SENSOR, s.parameters, w.c.file, ours);
+    w.sensors.push_back(make_plugin_sensor(s, static_cast<const calx_sensor*>(instance->table(CALX_SENSOR)),
+                                           instance->get(), instance->host()));
+    w.sensor_instances.push_back(std::move(instance));
+  }
+}
+
+}  // namespace
+
+struct Simulation::Impl {
+  explicit Impl(CaseFile file) : w(std::move(file)) {}
+  World w;
+};
+
+Simulation::Simulation(CaseFile input, const SimulationOptions& options) : impl_(std::make_unique<Impl>(std::move(input))) {
+  World& w = impl_->w;
+  w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins);
+  build_shapes(w);
+  w.laws = load_laws(w.c, *w.registry);
+  build_motions(w);
+  build_parts(w);
+  w.events = EventSet(w.c.events, kEventInterval);
+  for (std::size_t k = 0; k < w.c.sources.size(); ++k) {
+    const auto& s = w.c.sources[k];
+    std::uint32_t shape = 0;
+    while (w.c.shapes[shape].name != s.shape) ++shape;
+    const std::uint32_t material = index_of(w.c.materials, s.material);
+    w.sources.emplace_back(s, w.c.file, w.engine.particles.shapes[shape], shape, material, w.c.materials[material].density,
+                           w.c.seed, k);
+  }
+  const StepInputs in = step_inputs(w);
+  w.limits = step_limits(in);
+  w.dt = choose_step(in, w.limits);
+  build_engine(w, options.threads > 0 ? options.threads : omp_get_max_threads());
+  build_sensors(w);
+  w.place_parts(0);
+  if (!w.c.stages.empty()) w.start_stage(0, 0);
+}
+
+Simulation::~Simulation() = default;
+
+const CaseSettings& Simulation::settings() const { return impl_->w.c; }
+const WorldView& Simulation::world() const { return impl_->w; }
+double Simulation::time() const { return impl_->w.now; }
+std::uint64_t Simulation::step_count() const { return impl_->w.steps; }
+double Simulation::time_step() const { return impl_->w.dt; }
+std::vector<StepLimit> Simulation::step_limits() const { return impl_->w.limits; }
+std::vector<std::unique_ptr<Sensor>>& Simulation::sensors() { return impl_->w.sensors; }
+std::vector<PluginProvenance> Simulation::provenance() const { return impl_->w.registry->provenance(); }
+std::size_t Simulation::memory_bytes() const { return impl_->w.engine.memory_bytes(); }
+std::vector<std::string> Simulation::presets() const { return impl_->w.laws.presets; }
+
+bool Simulation::finished() const {
+  const World& w = impl_->w;
+  return w.ended || w.now >= w.c.time.end - 0.5 * w.dt;
+}
+
+void Simulation::step() {
+  World& w = impl_->w;
+  const double t = w.now;
+  w.handle_events(t);
+  w.insert_due(t);
+  w.energy_removed += w.energy_leaving;
+  w.energy_leaving = 0;
+  w.engine.begin(w.dt);
+  // verlet evaluates contacts at the end of the step, euler at its start.
+  const double at = w.engine.options.verlet ? static_cast<double>(w.steps + 1) * w.dt : t;
+  w.place_parts(at);
+  const GuardReport report = w.engine.finish(at, w.dt);
+  ++w.steps;
+  w.now = static_cast<double>(w.steps) * w.dt;
+  if (!report.message.empty())
+    throw Error(Fault::numerics, "run stopped at t = " + format_number(w.now) + " s: " + report.message);
+  if (!report.outside.empty()) {
+    if (w.c.domain.on_leave == DomainSettings::OnLeave::error) {
+      const std::uint32_t p = report.outside.front();
+      const Record& b = w.engine.particles.body[p];
+      throw Error(Fault::numerics, "run stopped at t = " + format_number(w.now) + " s: particle " +
+                                       std::to_string(w.engine.particles.id[p]) + " left the domain at (" +
+                                       format_number(b.x) + ", " + format_number(b.y) + ", " + format_number(b.z) +
+                                       ") m with velocity (" + format_number(b.vx) + ", " + format_number(b.vy) + ", " +
+                                       format_number(b.vz) + ") m/s; make \"domain\" larger or set \"on_leave\" to "
+                                       "\"delete\" or \"count\"");
+    }
+    w.leave(report.outside);
+  }
+  for (auto& s : w.sensors)
+    if (s->wants_every_step()) s->step(w);
+}
+
+Simulation::Counters Simulation::counters() const {
+  const Engine& e = impl_->w.engine;
+  Counters c;
+  c.rebuilds = e.rebuilds();
+  c.pair_entries = e.pairs().entry_count();
+  c.touching = e.touching();
+  c.wall_entries = e.walls().row_count();
+  c.seconds_neighbour = e.times().neighbour;
+  c.seconds_contacts = e.times().contacts;
+  c.seconds_integrate = e.times().integrate;
+  c.largest_overlap = e.largest_overlap();
+  return c;
+}
+
+std::vector<std::string> Simulation::take_messages() {
+  std::vector<std::string> out;
+  out.swap(impl_->w.messages);
+  return out;
+}
+
+void Simulation::save(StateWriter& out) const {
+  const World& w = impl_->w;
+  out.put_text("case", w.input.resolved);
+  out.put_count("steps", w.steps);
+  out.put_number("time_step", w.dt, "s");
+  out.put_count("stage", w.stage);
+  out.put_count("ended", w.ended);
+  const double numbers[] = {w.energy_inserted, w.energy_removed,  w.energy_leaving,
+                            w.kinetic_inserted, w.ledger.inserted, w.ledger.removed};
+  out.put("ledger/numbers", numbers, 6, "J,J,J,J,kg,kg");
+  const std::uint64_t counts[] = {w.ledger.inserted_count, w.ledger.removed_count};
+  out.put("ledger/counts", counts, 2);
+  std::vector<std::uint8_t> present;
+  for (const auto& part : w.engine.parts) present.push_back(part.present);
+  out.put("parts/present", present.data(), present.size());
+  w.engine.save(out);
+  w.motions.save(out);
+  w.events.save(out);
+  for (std::size_t k = 0; k < w.sources.size(); ++k) w.sources[k].save(out, "sources/" + std::to_string(k));
+  for (const auto& s : w.sensors) s->save(out, "sensors/" + s->name());
+}
+
+void Simulation::load(const StateReader& in) {
+  World& w = impl_->w;
+  if (in.get_number("time_step") != w.dt)
+    throw Error(Fault::files, "checkpoint: written with a time step of " + format_quantity(in.get_number("time_step"), "s") +
+                                  ", this case has " + format_quantity(w.dt, "s"));
+  w.steps = in.get_count("steps");
+  w.now = static_cast<double>(w.steps) * w.dt;
+  w.stage = in.get_count("stage");
+  w.ended = in.get_count("ended") != 0;
+  const auto numbers = in.get_doubles("ledger/numbers");
+  w.energy_inserted = numbers.at(0);
+  w.energy_removed = numbers.at(1);
+  w.energy_leaving = numbers.at(2);
+  w.kinetic_inserted = numbers.at(3);
+  w.ledger.inserted = numbers.at(4);
+  w.ledger.removed = numbers.at(5);
+  const auto counts = in.get_u64("ledger/counts");
+  w.ledger.inserted_count = counts.at(0);
+  w.ledger.removed_count = counts.at(1);
+  const auto present = in.get_u8("parts/present");
+  if (present.size() != w.engine.parts.size())
+    throw Error(Fault::files, "checkpoint: written with " + std::to_string(present.size()) + " parts, this case has " +
+                                  std::to_string(w.engine.parts.size()));
+  for (std::size_t k = 0; k < present.size(); ++k) w.engine.parts[k].present = present[k] != 0;
+  w.motions.load(in);
+  w.events.load(in);
+  w.place_parts(w.now);
+  w.engine.load(in);
+  for (std::size_t k = 0; k < w.sources.size(); ++k) w.sources[k].load(in, "sources/" + std::to_string(k));
+  for (auto& s : w.sensors) s->load(in, "sensors/" + s->name());
+  w.messages.clear();
+}
+
+std::string Simulation::digest() const {
+  const Engine& e = impl_->w.engine;
+  const Particles& p = e.particles;
+  std::vector<std::uint32_t> order(p.count());
+  for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return p.id[a] < p.id[b]; });
+  Sha256 hash;
+  for (const auto k : order) {
+    hash.add(&p.id[k], sizeof p.id[k]);
+    hash.add(&p.body[k], sizeof p.body[k]);
+    hash.add(&p.turn[k], sizeof p.turn[k]);
+  }
+  for (std::uint32_t k = 0; k < e.history_columns(); ++k) {
+    for (std::size_t row = 0; row < e.pairs().entry_count(); ++row)
+      if (e.pairs().touching[row]) hash.add(&e.pairs().history[k * e.pairs().stride + row], sizeof(double));
+    for (std::size_t slot = 0; slot < e.walls().touching.size(); ++slot)
+      if (e.walls().touching[slot]) hash.add(&e.walls().history[k * e.walls().stride + slot], sizeof(double));
+  }
+  return hash.finish();
+}
+
+}  // namespace calx
