@@ -184,13 +184,13 @@ std::string dimension_name(const Unit& unit) {
 double to_si(double value, const std::string& unit, const std::string& si) {
   const Unit from = parse_unit(unit), to = parse_unit(si);
   if (!same_dimension(from, to)) {
-    const auto article = [](const std::string& noun) {
-      return (std::string("aeiou").find(noun[0]) == std::string::npos ? "a " : "an ") + noun;
+    const auto noun = [](const Unit& u, const std::string& text) {
+      const std::string name = dimension_name(u);
+      if (name.compare(0, 8, "quantity") == 0) return "a quantity in " + (text.empty() ? name.substr(12) : text);
+      return (std::string("aeiou").find(name[0]) == std::string::npos ? "a " : "an ") + name +
+             (text.empty() || text == "1" ? "" : " in " + text);
     };
-    const std::string wanted = dimension_name(to);
-    throw Error(Fault::settings, "unit \"" + unit + "\" is of " + article(dimension_name(from)) + "; " + article(wanted) +
-                                     (si == "1" || si.empty() || wanted.compare(0, 8, "quantity") == 0 ? "" : " in " + si) +
-                                     " is needed");
+    throw Error(Fault::settings, "unit \"" + unit + "\" measures " + noun(from, "") + "; " + noun(to, si) + " is needed");
   }
   // One rounding instead of two where the factor is a negative power of ten: 2.5 mm is 0.0025 to the last bit.
   const double inverse = to.factor / from.factor;

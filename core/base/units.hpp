@@ -23,7 +23,7 @@ bool same_dimension(const Unit& a, const Unit& b);
 std::string dimension_name(const Unit& unit);
 
 /// Value converted to SI. Throws Error(Fault::settings) when unit is not of the dimension of si:
-/// `unit "kg" is a mass; a length in m is needed`.
+/// `unit "kg" measures a mass; a length in m is needed`.
 double to_si(double value, const std::string& unit, const std::string& si);
 
 /// "2.5 mm", "-0.3" for unit "1" or ""; the shortest digits that read back to the same number.

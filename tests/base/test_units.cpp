@@ -65,10 +65,11 @@ TEST_CASE("an unknown or ambiguous unit says what would be right") {
 }
 
 TEST_CASE("a unit of another dimension is refused, turns per second are not hertz") {
-  CHECK_THROWS_WITH(to_si(1, "kg", "m"), "unit \"kg\" is of a mass; a length in m is needed");
-  CHECK_THROWS_WITH(to_si(1, "Hz", "rad/s"), "unit \"Hz\" is of a frequency; an angular speed in rad/s is needed");
-  CHECK_THROWS_WITH(to_si(1, "N/m", "N/m^1.5"), "unit \"N/m\" is of a stiffness; a quantity in kg m^-0.5 s^-2 is needed");
-  CHECK_THROWS_WITH(to_si(1, "m", "1"), "unit \"m\" is of a length; a plain number is needed");
+  CHECK_THROWS_WITH(to_si(1, "kg", "m"), "unit \"kg\" measures a mass; a length in m is needed");
+  CHECK_THROWS_WITH(to_si(1, "Hz", "rad/s"), "unit \"Hz\" measures a frequency; an angular speed in rad/s is needed");
+  CHECK_THROWS_WITH(to_si(1, "N/m", "N/m^1.5"), "unit \"N/m\" measures a stiffness; a quantity in N/m^1.5 is needed");
+  CHECK_THROWS_WITH(to_si(1, "N/m^1.5", "N/m"), "unit \"N/m^1.5\" measures a quantity in kg m^-0.5 s^-2; a stiffness in N/m is needed");
+  CHECK_THROWS_WITH(to_si(1, "m", "1"), "unit \"m\" measures a length; a plain number is needed");
 }
 
 TEST_CASE("numbers print with the digits that read back") {
