@@ -15,6 +15,7 @@ namespace calx {
 struct Parameters {
   std::string json = "{}";
   std::string pointer;
+  std::string folder;  // absolute; relative paths in the object start here; empty: the folder of the case file
 };
 
 struct MaterialSettings {
@@ -53,7 +54,7 @@ struct SizeSettings {
   double scale = 1;                   // fixed; mean of normal; median of lognormal
   double deviation = 0;               // normal: of the scale; lognormal: of ln(scale)
   double lowest = 1, highest = 1;     // uniform: the range; normal and lognormal: cut-offs
-  std::vector<double> scales, shares; // list: scales and their shares by mass
+  std::vector<double> scales, shares; // list: scales and their shares by mass, which sum to 1
 };
 
 /// A volume in the world frame. Box: lo, hi. Cylinder: axis from a to b, radius. Cone: axis from a to b, radius at a,
@@ -64,6 +65,7 @@ struct RegionSettings {
   Vec3 a, b;
   double radius = 0, radius_b = 0;  // m
   std::string follows;              // name of a part whose motion carries the region; empty: fixed
+  bool is_named = true;             // false: written inline by a sensor or condition, its name made up by the reader
   bool contains(const Vec3& p) const;
   double volume() const;  // m^3
   Box bounds() const;
@@ -79,7 +81,7 @@ struct ConditionSettings {
   double kinetic_per_particle = 0; // settled: J; 0: the default m g d / 1000 of each particle
   double hold = 0;                 // settled: for this long, s
   double not_before = 0;           // settled: earliest time after arming, s
-  std::string event;               // after: which
+  std::string event;               // after: which; {"event": "name"} is after with no delay
   std::string motion;              // cycle: of this motion
   std::vector<ConditionSettings> parts;  // all, any
   std::string pointer;
@@ -130,7 +132,7 @@ struct ForceSettings {
 struct SensorSettings {
   std::string name, kind, pointer;  // kind: built-in name or a plugin id
   double every = 0;                 // s of simulated time between samples
-  Parameters parameters;            // the whole object; core/measure reads its own keys
+  Parameters parameters;            // the whole object, inline regions replaced by their made-up names
 };
 
 struct StageSettings {
@@ -164,7 +166,8 @@ struct NeighbourSettings {
 };
 
 struct CaseSettings {
-  std::string file;       // path of the case, for messages and relative paths
+  std::string file;       // path of the case, for messages
+  std::string folder;     // absolute; relative paths of the case start here
   std::string title;
   Vec3 gravity{0, 0, -9.81};
   DomainSettings domain;
@@ -177,7 +180,7 @@ struct CaseSettings {
   std::vector<SourceSettings> sources;
   std::vector<PartSettings> parts;
   std::vector<MotionSettings> motions;
-  std::vector<EventSettings> events;
+  std::vector<EventSettings> events;  // named ones, then those written inline ("source hopper fill")
   std::vector<StageSettings> stages;
   std::vector<ForceSettings> forces;
   std::vector<SensorSettings> sensors;

@@ -1,0 +1,100 @@
+#include "base/sha256.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace calx {
+namespace {
+
+// First 32 bits of the fractional parts of the cube roots of the first 64 primes.
+const std::uint32_t constants[64] = {
+    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5, 0xd807aa98, 0x12835b01,
+    0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174, 0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc,
+    0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da, 0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147,
+    0x06ca6351, 0x14292967, 0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070, 0x19a4c116, 0x1e376c08,
+    0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3, 0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208,
+    0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2};
+
+std::uint32_t turn(std::uint32_t x, int n) { return (x >> n) | (x << (32 - n)); }
+
+}  // namespace
+
+void Sha256::block(const unsigned char* p) {
+  std::uint32_t w[64];
+  for (int i = 0; i < 16; ++i)
+    w[i] = std::uint32_t(p[4 * i]) << 24 | std::uint32_t(p[4 * i + 1]) << 16 | std::uint32_t(p[4 * i + 2]) << 8 | p[4 * i + 3];
+  for (int i = 16; i < 64; ++i) {
+    const std::uint32_t s0 = turn(w[i - 15], 7) ^ turn(w[i - 15], 18) ^ (w[i - 15] >> 3);
+    const std::uint32_t s1 = turn(w[i - 2], 17) ^ turn(w[i - 2], 19) ^ (w[i - 2] >> 10);
+    w[i] = w[i - 16] + s0 + w[i - 7] + s1;
+  }
+  std::uint32_t a = h_[0], b = h_[1], c = h_[2], d = h_[3], e = h_[4], f = h_[5], g = h_[6], h = h_[7];
+  for (int i = 0; i < 64; ++i) {
+    const std::uint32_t t1 = h + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + ((e & f) ^ (~e & g)) + constants[i] + w[i];
+    const std::uint32_t t2 = (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+    h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
+  }
+  const std::uint32_t sum[8] = {a, b, c, d, e, f, g, h};
+  for (int i = 0; i < 8; ++i) h_[i] += sum[i];
+}
+
+void Sha256::add(const void* data, std::size_t bytes) {
+  const unsigned char* p = static_cast<const unsigned char*>(data);
+  total_ += bytes;
+  while (bytes > 0) {
+    if (filled_ == 0 && bytes >= 64) {
+      block(p);
+      p += 64, bytes -= 64;
+      continue;
+    }
+    const std::size_t n = std::min(bytes, 64 - filled_);
+    std::memcpy(buffer_ + filled_, p, n);
+    p += n, bytes -= n, filled_ += n;
+    if (filled_ == 64) block(buffer_), filled_ = 0;
+  }
+}
+
+std::string Sha256::finish() {
+  const std::uint64_t bits = total_ * 8;
+  const unsigned char one = 0x80, zero = 0;
+  add(&one, 1);
+  while (filled_ != 56) add(&zero, 1);
+  unsigned char length[8];
+  for (int i = 0; i < 8; ++i) length[i] = static_cast<unsigned char>(bits >> (56 - 8 * i));
+  add(length, 8);
+  std::string out;
+  for (const std::uint32_t word : h_)
+    for (int shift = 28; shift >= 0; shift -= 4) out += "0123456789abcdef"[(word >> shift) & 15];
+  return out;
+}
+
+std::string sha256(const void* data, std::size_t bytes) {
+  Sha256 s;
+  s.add(data, bytes);
+  return s.finish();
+}
+
+std::string sha256(const std::string& bytes) { return sha256(bytes.data(), bytes.size()); }
+
+std::string sha256_file(const std::string& path) {
+  const auto failed = [&](int code) {
+    return Error(Fault::files, path + ": cannot be read for its SHA-256; " + std::strerror(code));
+  };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) throw failed(errno);
+  Sha256 s;
+  std::vector<char> buffer(1 << 16);
+  std::size_t n;
+  while ((n = std::fread(buffer.data(), 1, buffer.size(), file.get())) > 0) s.add(buffer.data(), n);
+  if (std::ferror(file.get())) throw failed(errno);
+  return s.finish();
+}
+
+}  // namespace calx
