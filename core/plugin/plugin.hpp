@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calx/all.h"
@@ -20,10 +21,11 @@ struct PluginManifest {
 };
 
 /// Search folders in order: given, CALX_PLUGIN_PATH (secure_getenv), $XDG_DATA_HOME/calx/plugins, beside the program
-/// (build tree: <dir of calx>/../plugins) and <prefix>/lib/calx/plugins.
+/// (build tree: <dir of calx>/../plugins) and <prefix>/lib/calx/plugins. Canonical, each once, only those that exist.
+/// Throws Error(Fault::files) for a given folder that does not exist and for a relative one in CALX_PLUGIN_PATH.
 std::vector<std::string> plugin_search_path(const std::vector<std::string>& given);
 
-/// All manifests on the path, sorted within each folder; of a duplicate id the first wins, the others are refused.
+/// All manifests in the folders, sorted within each folder; of a duplicate id the first wins, the others are refused.
 std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& path);
 
 class PluginLibrary;
@@ -40,6 +42,11 @@ class PluginInstance {
   /// The table of that id, or null.
   const void* table(const char* interface_id) const;
   const calx_host* host() const;
+  /// "calx.epam 1.0.0", for messages.
+  std::string label() const;
+  /// Throws for a negative status, with the message the plugin left through host->fail: Fault::settings for
+  /// CALX_E_CONFIG (the case is wrong), else Fault::plugin. doing: what was called, "build". Call it right after.
+  void check(calx_status status, const std::string& file, const std::string& pointer, const std::string& doing) const;
 
  private:
   std::shared_ptr<PluginLibrary> library_;
@@ -56,7 +63,7 @@ struct PluginProvenance {
 /// One per simulation: ids to loaded libraries. [main]
 class PluginRegistry {
  public:
-  /// search: see plugin_search_path. pins: id and sha256 that must match.
+  /// search: the folders, usually from plugin_search_path. pins: id and sha256 that must match.
   explicit PluginRegistry(const std::vector<std::string>& search,
                           std::vector<std::pair<std::string, std::string>> pins = {});
   ~PluginRegistry();
@@ -67,12 +74,20 @@ class PluginRegistry {
   const calx_descriptor& load(const std::string& id, const std::string& kind, const std::string& file,
                               const std::string& pointer);
 
-  /// load + resolve parameters of the descriptor + create + check of the table's draft. extra_tables: further tables
-  /// whose keys may stand in the same JSON object; their values are not returned here.
+  /// load + resolve parameters of the descriptor + create_with_values. ignore_keys: keys of the JSON object that belong
+  /// to other tables. Throws what they throw.
   InstancePtr create(const std::string& id, const std::string& kind, const Parameters& parameters,
                      const std::string& file, const std::vector<std::string>& ignore_keys = {});
 
+  /// load + create + check of the table (draft, size, functions, fields). values: of the descriptor's parameter table,
+  /// in its order, SI; json: what extra_schema allows. Throws Error(Fault::settings) with the plugin's own message where
+  /// it finds the case wrong, else Error(Fault::plugin).
+  InstancePtr create_with_values(const std::string& id, const std::string& kind, const std::string& file,
+                                 const std::string& pointer, const std::vector<double>& values,
+                                 const std::string& json = "{}");
+
   const std::vector<PluginManifest>& manifests() const;
+  /// Of every id loaded, sorted by id.
   std::vector<PluginProvenance> provenance() const;
 
  private:
@@ -80,7 +95,8 @@ class PluginRegistry {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Text of `calx plugin list`, `describe ID`, `schema ID`.
+/// Text of `calx plugin list`, `describe ID`, `schema ID`. list reads manifests only; the other two load the one library.
+/// Throw Error(Fault::plugin) as PluginRegistry::load does.
 std::string plugin_list_text(const std::vector<std::string>& search);
 std::string plugin_describe_text(const std::string& id, const std::vector<std::string>& search);
 std::string plugin_schema_text(const std::string& id, const std::vector<std::string>& search);

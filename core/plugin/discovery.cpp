@@ -1,0 +1,107 @@
+// discovery.cpp: where plugins are looked for, and which manifests lie there. Nothing is loaded or executed.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "base/error.hpp"
+#include "plugin/manifest.hpp"
+
+namespace calx {
+namespace {
+
+namespace fs = std::filesystem;
+
+// secure_getenv: a program with raised rights must not load what its caller's environment names.
+std::string environment(const char* name) {
+  const char* value = secure_getenv(name);
+  return value ? value : "";
+}
+
+class FolderList {
+ public:
+  /// Folders that do not exist, and those that stand in the list already, are left out.
+  void add(const fs::path& folder) {
+    std::error_code bad;
+    const fs::path real = fs::canonical(folder, bad);
+    if (bad || !fs::is_directory(real, bad)) return;
+    const std::string name = real.string();
+    if (std::find(list.begin(), list.end(), name) == list.end()) list.push_back(name);
+  }
+  std::vector<std::string> list;
+};
+
+bool is_manifest(const fs::path& path) {
+  static const std::string ending = ".plugin.json";
+  const std::string name = path.filename().string();
+  return name.size() > ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+}  // namespace
+
+std::vector<std::string> plugin_search_path(const std::vector<std::string>& given) {
+  FolderList folders;
+  for (const std::string& folder : given) {
+    std::error_code bad;
+    if (folder.empty() || !fs::is_directory(folder, bad))
+      throw Error(Fault::files, "plugin folder \"" + folder + "\" does not exist; give a folder that holds *.plugin.json");
+    folders.add(folder);
+  }
+
+  const std::string listed = environment("CALX_PLUGIN_PATH");
+  for (std::size_t from = 0; from <= listed.size();) {
+    const std::size_t to = std::min(listed.find(':', from), listed.size());
+    const std::string folder = listed.substr(from, to - from);
+    from = to + 1;
+    if (folder.empty()) continue;  // a shell would read it as the working directory
+    if (!fs::path(folder).is_absolute())
+      throw Error(Fault::files, "CALX_PLUGIN_PATH: \"" + folder +
+                                    "\" is not an absolute path; plugins are never looked for relative to the working directory");
+    folders.add(folder);
+  }
+
+  const fs::path data = environment("XDG_DATA_HOME");
+  const fs::path home = environment("HOME");
+  if (data.is_absolute())
+    folders.add(data / "calx" / "plugins");
+  else if (home.is_absolute())
+    folders.add(home / ".local" / "share" / "calx" / "plugins");
+
+  std::error_code bad;
+  const fs::path program = fs::read_symlink("/proc/self/exe", bad);
+  if (!bad) {
+    folders.add(program.parent_path() / ".." / "plugins");
+    folders.add(program.parent_path() / ".." / "lib" / "calx" / "plugins");
+  }
+  return folders.list;
+}
+
+std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& path) {
+  FolderList folders;
+  for (const std::string& folder : path)
+    if (!folder.empty()) folders.add(folder);
+
+  std::vector<PluginManifest> found;
+  std::map<std::string, std::string> first;  // usable id to the manifest that provides it
+  for (const std::string& folder : folders.list) {
+    std::vector<std::string> manifests;
+    std::error_code bad;
+    for (fs::directory_iterator at(folder, bad), end; !bad && at != end; at.increment(bad))
+      if (is_manifest(at->path())) manifests.push_back(at->path().string());
+    std::sort(manifests.begin(), manifests.end());
+    for (const std::string& manifest : manifests) {
+      for (PluginManifest& one : read_manifest(manifest)) {
+        if (one.refused.empty()) {
+          const auto added = first.emplace(one.id, one.path);
+          if (!added.second)
+            one.refused = "id " + one.id + " is provided by " + added.first->second + " already, so " + one.path +
+                          " is not used";
+        }
+        found.push_back(std::move(one));
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace calx

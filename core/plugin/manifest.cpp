@@ -1,0 +1,193 @@
+#include "plugin/manifest.hpp"
+
+#include <sys/utsname.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/nearest.hpp"
+#include "plugin/host.hpp"
+#include "plugin/refused.hpp"
+#include "plugin/tables.hpp"
+
+namespace calx {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",     "version", "vendor",
+                                                "license",     "plugins", "requires", "sha256"};
+const std::vector<std::string> plugin_keys = {"id", "kind", "summary"};
+
+/// "linux-x86_64": the key of this machine's library where a manifest names several.
+std::string platform() {
+  utsname system{};
+  if (uname(&system) != 0) return "unknown";
+  std::string name = system.sysname;
+  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  return name + "-" + system.machine;
+}
+
+const json& member(const json& object, const char* key, const std::string& where) {
+  const auto found = object.find(key);
+  if (found == object.end()) throw Refused{where + (where.empty() ? "" : " ") + "has no \"" + key + "\""};
+  return *found;
+}
+
+std::string text(const json& object, const char* key, const std::string& where) {
+  const json& value = member(object, key, where);
+  if (!value.is_string() || value.get_ref<const std::string&>().empty())
+    throw Refused{where + "/" + key + ": " + value.dump() + " is not a text"};
+  return value.get<std::string>();
+}
+
+int number(const json& object, const char* key, const std::string& where) {
+  const json& value = member(object, key, where);
+  if (!value.is_number_integer() || value < 0 || value > 65535)
+    throw Refused{where + "/" + key + ": " + value.dump() + " is not a whole number from 0 to 65535"};
+  return value.get<int>();
+}
+
+void check_keys(const json& object, const std::vector<std::string>& known, const std::string& where) {
+  for (const auto& item : object.items()) {
+    if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
+    const std::string near = nearest_name(item.key(), known);
+    throw Refused{where + "/" + item.key() + ": unknown key" + (near.empty() ? "" : "; did you mean \"" + near + "\"?")};
+  }
+}
+
+/// [A-Za-z0-9.-], with a dot, as in "calx.epam" and "org.example.wet-hertz": safe in file names, JSON and HDF5 paths.
+bool is_id(const std::string& id) {
+  return id.find('.') != std::string::npos && id.front() != '.' && id.back() != '.' && id.size() <= 128 &&
+         id.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_") == std::string::npos;
+}
+
+bool is_sha256(const std::string& hash) {
+  return hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// What concerns every id of the manifest: which ABI, which host extensions.
+std::string host_fault(const json& root) {
+  const json& abi = member(root, "abi", "");
+  if (!abi.is_object()) throw Refused{"/abi: " + abi.dump() + " is not an object"};
+  const int major = number(abi, "major", "/abi"), minor = number(abi, "minor", "/abi");
+  if (major != CALX_ABI_MAJOR)
+    return "built for ABI " + std::to_string(major) + "." + std::to_string(minor) + ", this host speaks ABI " +
+           std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + ": rebuild it";
+  const int draft = number(abi, "draft", "/abi");
+  if (draft != CALX_ABI_DRAFT)
+    return "built against draft " + std::to_string(draft) + ", this host speaks draft " +
+           std::to_string(CALX_ABI_DRAFT) + ": rebuild it";
+  const auto wanted = root.find("requires");
+  if (wanted == root.end()) return "";
+  if (!wanted->is_array()) throw Refused{"/requires: " + wanted->dump() + " is not a list"};
+  for (const json& extension : *wanted) {
+    if (!extension.is_string()) throw Refused{"/requires: " + extension.dump() + " is not a text"};
+    const auto& offered = host_extensions();
+    if (std::find(offered.begin(), offered.end(), extension.get<std::string>()) == offered.end())
+      return "needs the host extension " + extension.get<std::string>() + ", which this host lacks; it has " +
+             quoted_list(offered);
+  }
+  return "";
+}
+
+/// Absolute path of the library; refuses one that leads out of the manifest's folder.
+std::string library_path(const json& root, const fs::path& folder) {
+  const json& value = member(root, "library", "");
+  std::string name;
+  if (value.is_object()) {
+    const auto found = value.find(platform());
+    if (found == value.end()) {
+      std::vector<std::string> offered;
+      for (const auto& item : value.items()) offered.push_back(item.key());
+      throw Refused{"/library: holds no library for " + platform() + "; it has " + quoted_list(offered)};
+    }
+    name = text(value, platform().c_str(), "/library");
+  } else {
+    name = text(root, "library", "");
+  }
+  const fs::path wanted = (folder / name).lexically_normal();
+  std::error_code bad;
+  const fs::path parent = fs::canonical(wanted.parent_path(), bad);
+  const auto meet = std::mismatch(folder.begin(), folder.end(), parent.begin(), parent.end());
+  const bool inside = !bad && meet.first == folder.end();
+  if (!inside || !wanted.has_filename()) throw Refused{"/library: \"" + name + "\" lies outside the manifest's folder"};
+  const fs::path library = parent / wanted.filename();
+  if (!fs::exists(fs::symlink_status(library, bad)))
+    throw Refused{"/library: " + library.string() + " does not exist"};
+  return library.string();
+}
+
+json parse(const std::string& path) {
+  std::error_code bad;
+  const auto size = fs::file_size(path, bad);
+  if (bad || size > 1 << 20) throw Refused{bad ? "cannot be read: " + bad.message() : "is larger than 1 MiB"};
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (!in) throw Refused{"cannot be read"};
+  try {
+    json root = json::parse(content.str());
+    if (!root.is_object()) throw Refused{"is not a JSON object"};
+    return root;
+  } catch (const json::parse_error& e) {
+    throw Refused{"is not JSON: error at byte " + std::to_string(e.byte)};
+  }
+}
+
+}  // namespace
+
+std::vector<PluginManifest> read_manifest(const std::string& path) {
+  PluginManifest common;
+  common.path = path;
+  std::vector<PluginManifest> out;
+  try {
+    const json root = parse(path);
+    const int schema = number(root, "calx_plugin", "");
+    if (schema != 1)
+      throw Refused{"/calx_plugin: manifest of schema " + std::to_string(schema) + ", this host reads schema 1"};
+    const std::string fault = host_fault(root);
+    // A newer minor may bring keys that an older host need not know.
+    const bool newer = root["abi"]["minor"] > CALX_ABI_MINOR;
+    if (!newer) check_keys(root, manifest_keys, "");
+    common.version = text(root, "version", "");
+    common.license = text(root, "license", "");
+    if (root.count("sha256")) {
+      common.sha256 = text(root, "sha256", "");
+      if (!is_sha256(common.sha256)) throw Refused{"/sha256: not 64 lower-case hexadecimal digits"};
+    }
+    const json& plugins = member(root, "plugins", "");
+    if (!plugins.is_array() || plugins.empty()) throw Refused{"/plugins: not a list of at least one plugin"};
+    common.refused = fault;
+    if (fault.empty()) common.library = library_path(root, fs::path(path).parent_path());
+    for (std::size_t k = 0; k < plugins.size(); ++k) {
+      const std::string where = "/plugins/" + std::to_string(k);
+      if (!plugins[k].is_object()) throw Refused{where + ": not an object"};
+      if (!newer) check_keys(plugins[k], plugin_keys, where);
+      PluginManifest one = common;
+      one.id = text(plugins[k], "id", where);
+      one.kind = text(plugins[k], "kind", where);
+      one.summary = text(plugins[k], "summary", where);
+      if (!is_id(one.id))
+        throw Refused{where + "/id: \"" + one.id + "\" is not an id such as \"org.example.wet-hertz\""};
+      for (const PluginManifest& other : out)
+        if (other.id == one.id) throw Refused{where + "/id: \"" + one.id + "\" stands twice in this manifest"};
+      const auto& kinds = known_kinds();
+      if (one.refused.empty() && std::find(kinds.begin(), kinds.end(), one.kind) == kinds.end())
+        one.refused = "of the kind " + one.kind + ", which this host does not know; it knows " + quoted_list(kinds);
+      out.push_back(std::move(one));
+    }
+  } catch (const Refused& refused) {
+    const bool named = !refused.reason.empty() && refused.reason.front() == '/';
+    // Keep the ids already read, so that a case naming one is told what is wrong with its manifest.
+    if (out.empty()) out.push_back(common);
+    for (PluginManifest& one : out) one.refused = "bad manifest " + path + (named ? " " : ": ") + refused.reason;
+  }
+  return out;
+}
+
+}  // namespace calx
