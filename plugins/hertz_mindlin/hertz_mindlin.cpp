@@ -38,11 +38,13 @@ const char sha256[] =
 
 // What the user may set. Options belong to the instance, material values to each material, given values to each pair;
 // the case file holds options and given values in one object.
-enum { ROLLING, TENSION };
 const calx_field options[] = {
     CALX_ROLLING_OPTION
     {"tension", "allowed|clipped",
      "allowed: the dashpot may pull at the end of a contact, restitution is exact; clipped: the normal force never pulls",
+     0, 1, 0, CALX_FIELD_CHOICE, 0},
+    {"tangential", "displacement|rescaled",
+     "what a growing contact keeps: the tangential displacement, as most codes do, or the force, which never creates energy",
      0, 1, 0, CALX_FIELD_CHOICE, 0}};
 enum { YOUNG, POISSON };
 const calx_field material[] = {
@@ -60,7 +62,8 @@ class HertzMindlin : public calx::Instance {
 
   HertzMindlin(const calx_host*, const calx_config& config)
       : rolling_(static_cast<int>(calx::parameter(descriptor, config, "rolling"))),
-        clipped_(calx::parameter(descriptor, config, "tension") > 0.5) {
+        clipped_(calx::parameter(descriptor, config, "tension") > 0.5),
+        rescaled_(calx::parameter(descriptor, config, "tangential") > 0.5) {
     std::memset(&table_, 0, sizeof table_);
     if (rolling_ == CALX_ROLLING_NONE)
       CALX_LAW_FILL(table_, hertz_mindlin);
@@ -106,6 +109,7 @@ class HertzMindlin : public calx::Instance {
       row.dash_t = 2 * std::sqrt(5.0 / 6.0) * beta * std::sqrt(row.eight_g);
       row.friction = value[FRICTION];
       row.lowest = law.clipped_ ? 0 : -1e30;
+      row.rescaled = law.rescaled_ ? 1 : 0;
       CALX_ROLLING_DERIVE(law.rolling_, value + ROLLING_FIRST, row);
       std::memcpy(pair, &row, law.table_.pair_count * sizeof *pair);
     });
@@ -120,7 +124,7 @@ class HertzMindlin : public calx::Instance {
   }
 
   int rolling_;
-  bool clipped_;
+  bool clipped_, rescaled_;
   calx_contact_law table_;
 };
 

@@ -8,6 +8,7 @@
   X(dash_t, "Pa^0.5", 0, 1e8, 0, 0, "tangential dashpot: 2 sqrt(5/6) beta sqrt(8 G*)")                             \
   X(friction, "1", 0, 10, 0.5, 0, "sliding friction")                                                              \
   X(lowest, "N", -1e30, 0, -1e30, 0, "lowest normal force: 0 where tension is clipped, else far below any force") \
+  X(rescaled, "1", 0, 1, 0, 0, "1: a growing contact keeps its tangential force, not its tangential displacement")   \
   calx_rolling_pair_LIST(X)
 #define hertz_mindlin_prop_LIST(X)
 #define hertz_mindlin_state_LIST(X)                                                                  \
@@ -59,8 +60,8 @@ CALX_FN void CALX_ID(hertz_mindlin_force)(const CALX_ID(calx_contact) * c, const
   load->kt_before = p->eight_g * a_before;
 
   /* S_t grows with the root of the overlap, so (kt_before / kt)^2 is the ratio of the overlaps. */
-  CALX_ID(calx_slide)(c, vn, st, load->kt_before, calx_min(before, overlap), overlap, p->dash_t * root,
-                      p->friction * calx_max(fn, R(0.0)), spring);
+  CALX_ID(calx_slide)(c, vn, st, load->kt_before, p->rescaled > R(0.5) ? calx_min(before, overlap) : overlap, overlap,
+                      p->dash_t * root, p->friction * calx_max(fn, R(0.0)), spring);
   out->fx = fn * c->nx + spring->fx;
   out->fy = fn * c->ny + spring->fy;
   out->fz = fn * c->nz + spring->fz;
