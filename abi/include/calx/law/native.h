@@ -34,6 +34,24 @@
   static const calx_field law##_pair_fields[] = {law##_pair_LIST(CALX_N_ROW) CALX_N_END};   \
   static const calx_field law##_prop_fields[] = {law##_prop_LIST(CALX_N_ROW) CALX_N_END};   \
   static const calx_field law##_state_fields[] = {law##_state_LIST(CALX_N_ROW) CALX_N_END};
+/* Fills what a calx_contact_law takes from the lists and the two compilations of the text; material, given, derive,
+ * stable_dt, reach, flags and the text itself stay with the author. */
+#define CALX_LAW_FILL(table, law)                      \
+  do {                                                 \
+    (table).struct_size = sizeof(calx_contact_law);    \
+    (table).draft = CALX_ABI_DRAFT;                    \
+    (table).dialect = 1;                               \
+    (table).needs = law##_NEEDS;                       \
+    (table).pair_count = CALX_COUNT(law##_pair_fields);   \
+    (table).prop_count = CALX_COUNT(law##_prop_fields);   \
+    (table).state_count = CALX_COUNT(law##_state_fields); \
+    (table).pair = law##_pair_fields;                  \
+    (table).prop = law##_prop_fields;                  \
+    (table).state = law##_state_fields;                \
+    (table).symbol = #law;                             \
+    (table).eval_f32 = law##_batch_f32;                \
+    (table).eval_f64 = law##_batch_f64;                \
+  } while (0)
 #endif
 
 #undef CALX_N_IN

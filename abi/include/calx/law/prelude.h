@@ -109,6 +109,12 @@ typedef struct CALX_ID(calx_wrench) {
   } CALX_ID(law##_##what);
 /* Before the helper functions of a law, and before CALX_LAW_EVAL. */
 #define CALX_LAW_DECLARE(law) CALX_STRUCT(law, pair) CALX_STRUCT(law, prop) CALX_STRUCT(law, state)
+/* Instead of it, for a second law of the same text that shares the pair row and the particle columns of the first and
+ * keeps another history. The text still defines law_pair_LIST and law_prop_LIST, as other names of base's lists. */
+#define CALX_LAW_DECLARE_LIKE(law, base)                        \
+  typedef CALX_ID(base##_pair) CALX_ID(law##_pair);             \
+  typedef CALX_ID(base##_prop) CALX_ID(law##_prop);             \
+  CALX_STRUCT(law, state)
 /* Gives: c contact, p pair row, pi and pj particle columns, s history, out wrench. */
 #define CALX_LAW_EVAL(law)                                                                           \
   CALX_FN void CALX_ID(law##_eval)(                                                                  \
