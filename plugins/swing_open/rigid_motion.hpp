@@ -157,26 +157,21 @@ inline Trip single_trip(const calx_descriptor& d, const calx_config& c) {
 }  // namespace calx
 
 /* Rows of parameter tables: the vector groups are numbered by the plugin, unique in its table. */
-#define CALX_VECTOR_FIELDS(name, unit, limit, x, y, z, group, what)            \
-  {name "_x", unit, what ", x", -(limit), limit, x, CALX_VEC(group), 0},       \
-      {name "_y", unit, what ", y", -(limit), limit, y, CALX_VEC(group), 0}, { \
-    name "_z", unit, what ", z", -(limit), limit, z, CALX_VEC(group), 0        \
-  }
-#define CALX_PROFILE_FIELDS                                                                                           \
-  {"profile",                                                                                                         \
-   "constant|trapezoid|cosine",                                                                                       \
-   "speed over one way: constant; trapezoid, with equal times of speeding up and slowing down; half a cosine",        \
-   0,                                                                                                                 \
-   2,                                                                                                                 \
-   0,                                                                                                                 \
-   CALX_FIELD_CHOICE,                                                                                                 \
-   0},                                                                                                                \
-  {                                                                                                                   \
-    "acceleration_share", "1",                                                                                        \
-        "share of the time of one way spent speeding up, and again slowing down; trapezoid only", 0.001, 0.5, 0.2, 0, \
-        0                                                                                                             \
-  }
-#define CALX_TRIP_FIELDS                                                                                          \
-  {"then", "stay|return", "stay at the end of the way, or return after the hold", 0, 1, 0, CALX_FIELD_CHOICE, 0}, \
-      {"hold", "s", "rest at the end of the way before the return", 0, 1e9, 0, 0, 0}, CALX_PROFILE_FIELDS
+// clang-format off
+#define CALX_VECTOR_FIELDS(name, unit, limit, x, y, z, group, what)      \
+  {name "_x", unit, what ", x", -(limit), limit, x, CALX_VEC(group), 0}, \
+  {name "_y", unit, what ", y", -(limit), limit, y, CALX_VEC(group), 0}, \
+  {name "_z", unit, what ", z", -(limit), limit, z, CALX_VEC(group), 0}
+#define CALX_PROFILE_FIELDS                                                                               \
+  {"profile", "constant|trapezoid|cosine",                                                                \
+   "speed over one way: constant; trapezoid, with equal times of speeding up and slowing down; half a "   \
+   "cosine", 0, 2, 0, CALX_FIELD_CHOICE, 0},                                                              \
+  {"acceleration_share", "1", "share of the time of one way spent speeding up, and again slowing down; "  \
+   "trapezoid only", 0.001, 0.5, 0.2, 0, 0}
+#define CALX_TRIP_FIELDS                                                                                  \
+  {"then", "stay|return", "stay at the end of the way, or return after the hold", 0, 1, 0,                \
+   CALX_FIELD_CHOICE, 0},                                                                                 \
+  {"hold", "s", "rest at the end of the way before the return", 0, 1e9, 0, 0, 0},                         \
+  CALX_PROFILE_FIELDS
+// clang-format on
 #endif

@@ -255,6 +255,21 @@ TEST_CASE("a resumed set goes on as the first one would have") {
   }
 }
 
+TEST_CASE("a resumed set keeps the rhythm of its checks") {
+  FakeView view;
+  view.mass["canister"] = 2;
+  const std::vector<EventSettings> events = {
+      {"full", joined(Kind::all, {at_time(0.012), reaches(Kind::mass, 1, "canister")})}};
+  EventSet first(events, 0.01), second(events, 0.01);
+  CHECK(first.update(0.011, view).empty());
+  calx::MemoryState state;
+  first.save(state);
+  second.load(state);
+  CHECK(second.update(0.015, view).empty());  // the next check is at 0.02 s
+  CHECK(view.looks == 0);
+  CHECK(second.update(0.0201, view) == Names{"full"});
+}
+
 TEST_CASE("a checkpoint of other events is refused by name") {
   EventSet set({{"open", at_time(1)}}, 0), other({{"shut", at_time(1)}}, 0);
   calx::MemoryState state;
