@@ -1,8 +1,8 @@
 // motion.hpp: where parts are at a time, and when things happen: poses, events and stages.
 #pragma once
-#include <functional>
-#include <memory>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/state.hpp"
@@ -30,7 +30,7 @@ struct Pose {
 class MotionSet {
  public:
   /// table and instance outlive the set. Returns the motion's index. carried_by: index of the motion applied on top of
-  /// this one, or -1.
+  /// this one, or -1; it may be added later. Throws Error(Fault::settings) for motions that carry each other in a circle.
   int add(const std::string& name, const calx_motion* table, const calx_instance* instance, bool waits_for_start,
           int carried_by);
   int find(const std::string& name) const;  // -1: none
@@ -39,12 +39,16 @@ class MotionSet {
   void start(int motion, double t);
   bool started(int motion) const { return motions_[static_cast<std::size_t>(motion)].started; }
   double start_time(int motion) const { return motions_[static_cast<std::size_t>(motion)].start; }
-  /// World pose at time t; -1 gives the pose at rest. Throws Error(Fault::plugin) when the plugin fails.
+  /// World pose at time t; motion -1 stands still at the origin. angle and cycle are the motion's own, without what
+  /// carries it. Throws Error(Fault::plugin) when the plugin fails or returns a pose that is no rigid motion.
   Pose pose(int motion, double t) const;
-  /// True while the pose can still change after t.
+  /// True while the pose can still change after t; false while the motion waits for its start.
   bool moving(int motion, double t) const;
+  /// Bound of the speed, m/s, of points within radius, m, of the pivot, carrying motions included. Where a turning motion
+  /// carries one that shifts its pivot, the way of the pivot is sampled.
   double top_speed(int motion, double radius) const;
   void save(StateWriter& out) const;
+  /// Throws Error(Fault::files) when the checkpoint was written with other motions.
   void load(const StateReader& in);
 
  private:
@@ -56,6 +60,10 @@ class MotionSet {
     double start = 0;
     int carried_by = -1;
   };
+  const Entry& entry(int motion) const;
+  Pose own_pose(const Entry& e, double t) const;
+  double own_top_speed(const Entry& e, double radius) const;
+  double pivot_reach(int motion, int carrier) const;
   std::vector<Entry> motions_;
 };
 
@@ -71,7 +79,10 @@ class EventView {
 };
 
 /// Fires each event once, in the order of the case; an event may follow another within the same step. Conditions that
-/// look at particles are asked at most once per check interval, s, so that they cost nothing in the step loop.
+/// look at particles (mass, count, settled) are asked only every check interval, s, so that they cost nothing in the step
+/// loop; between two checks they are unknown, and an event that needs one waits.
+/// The parts of "all" are read in order and a later part is armed only while the earlier ones hold: in all [after "poured",
+/// settled], hold and not_before count from "poured". A condition on its own is armed by the first update.
 class EventSet {
  public:
   EventSet() = default;
@@ -83,15 +94,25 @@ class EventSet {
   bool fired(const std::string& name) const;
   double time_of(const std::string& name) const;  // s; negative: not yet
   void save(StateWriter& out) const;
+  /// Throws Error(Fault::files) when the checkpoint was written with other events.
   void load(const StateReader& in);
 
  private:
+  struct Settling {      // memory of one settled leaf
+    double armed = -1;   // s, when its event first waited for nothing but it; -1: not yet
+    double since = -1;   // s, since when the region has been settled at each check; -1: it is not
+  };
   struct Entry {
     EventSettings settings;
     double fired_at = -1;
-    std::vector<double> since;  // per settled leaf, in reading order: time since which it has held, or -1
+    std::vector<Settling> leaves;  // settled leaves in reading order
   };
-  bool holds(const ConditionSettings& c, Entry& entry, std::size_t& leaf, double t, const EventView& view);
+  enum class Answer { no, unknown, yes };
+  struct Question;
+  Answer answer(const ConditionSettings& c, std::size_t leaf, Question& q) const;
+  Answer answer_all(const ConditionSettings& c, std::size_t leaf, Question& q) const;
+  Answer answer_any(const ConditionSettings& c, std::size_t leaf, Question& q) const;
+  Answer answer_settled(const ConditionSettings& c, Settling& leaf, const Question& q) const;
   std::vector<Entry> events_;
   std::vector<std::pair<std::string, double>> announced_;
   double check_interval_ = 0, next_check_ = 0;
