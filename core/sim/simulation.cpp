@@ -186,7 +186,7 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options) : impl_
                            w.c.seed, k);
   }
   const StepInputs in = step_inputs(w);
-  w.limits = step_limits(in);
+  w.limits = time_step_limits(in);
   w.dt = choose_step(in, w.limits);
   build_engine(w, options.threads > 0 ? options.threads : omp_get_max_threads());
   build_sensors(w);

@@ -59,7 +59,7 @@ Smallest smallest_of(const StepInputs& in, const std::string& material, double d
 
 }  // namespace
 
-std::vector<StepLimit> step_limits(const StepInputs& in) {
+std::vector<StepLimit> time_step_limits(const StepInputs& in) {
   const CaseSettings& c = *in.settings;
   std::vector<StepLimit> limits;
   double smallest_radius = 1e300;

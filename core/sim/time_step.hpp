@@ -21,7 +21,7 @@ struct StepInputs {
 /// smallest sphere. Law: what the law itself states for the lightest pair at the overlap of the fastest impact. Hertz:
 /// a twentieth of the collision time 2.87 (m*^2 / (R* E*^2 v))^0.2. Wall: a part may move 2 % of the smallest radius.
 /// The smallest is marked. Throws Error(Fault::settings) when there is none and the case gives no step.
-std::vector<StepLimit> step_limits(const StepInputs& in);
+std::vector<StepLimit> time_step_limits(const StepInputs& in);
 
 /// The step to use: the case's own, or the smallest limit. Throws Error(Fault::settings) when the case's own is beyond what
 /// is stable: half the Rayleigh time, three times a law's limit, five times the wall limit.
