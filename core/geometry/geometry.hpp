@@ -22,10 +22,16 @@ struct SurfacePoint {
   std::uint32_t element = 0;
 };
 
-/// What is wrong with a mesh; each is named in messages with its first place.
+/// What is wrong with the triangles of a shape. Revolutions are smooth by construction and not examined.
 struct MeshFaults {
-  std::size_t open_edges = 0, degenerate = 0, duplicate = 0, inverted = 0, non_manifold = 0;
-  std::string describe() const;  // "3 open edges (first at (…) m), …"; empty when none
+  std::size_t open_edges = 0;    // edges of one triangle only
+  std::size_t degenerate = 0;    // triangles without area; left out of the surface
+  std::size_t duplicate = 0;     // triangles on the same three vertices as an earlier one; left out of the surface
+  std::size_t inverted = 0;      // triangles wound against their neighbours, or whole closed shells turned inside out
+  std::size_t non_manifold = 0;  // edges of three or more triangles
+  // Middle of the first edge or triangle of each kind, m, part frame.
+  Vec3 first_open, first_degenerate, first_duplicate, first_inverted, first_non_manifold;
+  std::string describe() const;  // "3 open edges (first at (0.1, 0, 0.2) m), ..."; empty when none
 };
 
 /// Triangles for pictures and VTK; surfaces of revolution are cut within the chord given.
@@ -58,6 +64,7 @@ class Surface {
   /// Appends, ascending, the elements whose distance to p may be at most reach, m. [worker]
   void gather(const Vec3& p, double reach, std::vector<std::uint32_t>& elements) const;
 
+  /// Elements are numbered triangles first, then profile segments, each in the order given.
   /// Contacts of a sphere of the radius given with the candidate elements: the local minima nearer than radius, deepest
   /// first, at most max_count. Pure, no allocation. A centre exactly on the surface gives the face's own normal.
   /// [worker]
