@@ -2,11 +2,12 @@
 //
 // Keys: "region", "shape", "sectors" (8 to 12; 8), "centre" ([x, y] of the apex, m; found when left out), "direction"
 // (of a wedge: the horizontal direction across its ridge; [1, 0, 0]).
-// One d is the median sphere diameter in the region. The surface is the highest sphere point of each cell of d/2. Cone:
+// One d is the median sphere diameter in the region. The surface is the highest sphere point of each cell of d/4. Cone:
 // sectors of azimuth about the apex, which is the centroid of the surface above 80 % of its height, and bins of radius;
 // wedge: slices along the ridge, and bins of distance from the ridge, the highest bin across the whole width. Bins are
 // one d wide and hold the 95th percentile of their cells; the angle of each sector comes from fit_flank (flank.hpp).
-// The 95th percentile and the envelope lift the surface by nearly the same everywhere, which leaves the angle alone.
+// The 95th percentile and the envelope lift the surface by nearly the same everywhere, which leaves the angle alone;
+// where the slope changes with azimuth they follow the flattest part of a sector, so that a leaning pile reads low.
 //
 // Columns: angle_deg and sd_deg over all sectors, left_deg, left_sd_deg, right_deg, right_sd_deg of those whose middle
 // lies towards -direction and +direction, sectors_1 and bins_1 that gave an angle, apex_x_m, apex_y_m, apex_z_m. Never
@@ -123,9 +124,10 @@ class ReposeSensor : public Sensor {
       box.add(position(*sphere) - reach);
       box.add(position(*sphere) + reach);
     }
-    // Half a diameter, coarser only where the map would not fit into memory.
+    // A quarter of a diameter, so that bins near the apex hold enough cells; coarser only where the map would not fit
+    // into memory.
     const double area = (box.hi.x - box.lo.x) * (box.hi.y - box.lo.y);
-    const double cell = std::max(d_ / 2, std::sqrt(area / static_cast<double>(HeightMap::most_cells)));
+    const double cell = std::max(d_ / 4, std::sqrt(area / static_cast<double>(HeightMap::most_cells)));
     HeightMap map(box.lo, box.hi, cell);
     for (const Record* sphere : spheres) map.add(*sphere);
     std::vector<Cell> cells;
