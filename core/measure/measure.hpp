@@ -38,6 +38,8 @@ class Sensor {
   /// Called after every step when it asks for it (flow through a plane, cycle masses): cheap, no allocation.
   virtual bool wants_every_step() const { return false; }
   virtual void step(const WorldView&) {}
+  /// True when step() saw something that deserves a row at once, beside the regular ones; sample() clears it.
+  virtual bool row_due() const { return false; }
   virtual std::vector<FieldResult> fields() const { return {}; }
   virtual std::vector<CurveResult> curves() const { return {}; }
   virtual void save(StateWriter&, const std::string& /*prefix*/) const {}

@@ -1,0 +1,62 @@
+// measure.cpp: the list of built-in sensor kinds and the one place that makes them.
+#include "measure/measure.hpp"
+
+#include "base/error.hpp"
+#include "base/nearest.hpp"
+#include "measure/kinds.hpp"
+
+namespace calx {
+
+namespace {
+
+struct Kind {
+  const char* name;
+  std::unique_ptr<Sensor> (*make)(SensorOptions&);
+};
+
+const Kind kinds[] = {{"mass", make_mass_sensor},
+                      {"cycle-mass", make_cycle_mass_sensor},
+                      {"flow", make_flow_sensor},
+                      {"bulk-density", make_bulk_density_sensor},
+                      {"coordination", make_coordination_sensor},
+                      {"height-map", make_height_map_sensor},
+                      {"angle-of-repose", make_angle_of_repose_sensor},
+                      {"residue", make_residue_sensor},
+                      {"part-load", make_part_load_sensor},
+                      {"energy", make_energy_sensor},
+                      {"mass-ledger", make_mass_ledger_sensor}};
+
+const Kind* find_kind(const std::string& name) {
+  for (const Kind& kind : kinds)
+    if (name == kind.name) return &kind;
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_builtin_sensor(const std::string& kind) { return find_kind(kind) != nullptr; }
+
+std::unique_ptr<Sensor> make_sensor(const SensorSettings& settings, const CaseSettings& world) {
+  const Kind* kind = find_kind(settings.kind);
+  if (!kind) {
+    std::vector<std::string> known;
+    std::string list;
+    for (const Kind& each : kinds) {
+      known.push_back(each.name);
+      list += std::string(list.empty() ? "" : ", ") + each.name;
+    }
+    const std::string near = nearest_name(settings.kind, known);
+    throw Error(Fault::settings, world.file + " " + settings.pointer + "/kind: unknown kind of sensor \"" +
+                                     settings.kind + "\"; " + (near.empty() ? "" : "did you mean \"" + near + "\"? ") +
+                                     "Built in are " + list + "; others are named by their plugin's id");
+  }
+  SensorOptions options(settings, world);
+  std::unique_ptr<Sensor> sensor = kind->make(options);
+  options.finish();
+  sensor->name_ = settings.name;
+  sensor->kind_ = settings.kind;
+  sensor->every_ = settings.every;
+  return sensor;
+}
+
+}  // namespace calx
