@@ -1,5 +1,5 @@
-// Checkpoints: one HDF5 file with a dataset per put(), root attributes schema, calx_version, dataset_count, checksum and,
-// last of all, complete. A file without the marker, or whose checksum differs, is damaged and never read.
+// Checkpoints: one HDF5 file with a dataset per put(), root attributes schema, calx_version, dataset_count, checksum
+// and, last of all, complete. A file without the marker, or whose checksum differs, is damaged and never read.
 #include <unistd.h>
 
 #include <utility>
@@ -93,8 +93,8 @@ class H5StateReader : public StateReader {
     const std::vector<std::string> names = file_.datasets();
     const std::uint64_t count = file_.count("/", "dataset_count");
     if (names.size() != count) {
-      throw Error(Fault::files, file_.name() + ": " + std::to_string(names.size()) + " datasets instead of " +
-                                    std::to_string(count));
+      throw Error(Fault::files,
+                  file_.name() + ": " + std::to_string(names.size()) + " datasets instead of " + std::to_string(count));
     }
     std::uint64_t sum = 0;
     for (const std::string& name : names) {
@@ -145,7 +145,8 @@ std::unique_ptr<StateReader> read_checkpoint(const std::string& dir, std::string
       reasons += (reasons.empty() ? "" : "; ") + std::string(error.what());
     }
   }
-  throw Error(Fault::files, "no checkpoint to resume from in " + dir + ": " + reasons + "; run without --resume to start anew");
+  throw Error(Fault::files,
+              "no checkpoint to resume from in " + dir + ": " + reasons + "; run without --resume to start anew");
 }
 
 }  // namespace calx

@@ -18,15 +18,15 @@ bool file_exists(const std::string& path);
 /// Writes all bytes at the offset; 0, or the errno of the failure.
 int write_all(int descriptor, const void* data, std::size_t size, std::uint64_t offset);
 
-/// 64-bit FNV-1a (Fowler, Noll, Vo) taken over 8-byte little-endian words, the last one padded with zeros: finds cut and
-/// altered data; not a defence against intent.
+/// 64-bit FNV-1a (Fowler, Noll, Vo) taken over 8-byte little-endian words, the last one padded with zeros: finds cut
+/// and altered data; not a defence against intent.
 std::uint64_t checksum(const void* data, std::size_t size, std::uint64_t seed = 0xCBF29CE484222325ull);
 
 /// A number as text that reads back to the same bits, whatever the locale.
 std::string shortest_text(double value);
 
-/// A file written under a temporary name in the same folder; commit() renames it over path. Destroyed without commit, it
-/// leaves nothing.
+/// A file written under a temporary name in the same folder; commit() renames it over path. Destroyed without commit,
+/// it leaves nothing.
 class NewFile {
  public:
   explicit NewFile(const std::string& path);

@@ -70,7 +70,9 @@ std::vector<std::string> safe_names(const std::vector<std::string>& names, const
       safe += plain ? c : '_';
     }
     if (safe.empty()) safe = "part";
-    const auto used = [&](const std::string& s) { return s == taken || std::find(out.begin(), out.end(), s) != out.end(); };
+    const auto used = [&](const std::string& s) {
+      return s == taken || std::find(out.begin(), out.end(), s) != out.end();
+    };
     std::string unique = safe;
     for (int k = 2; used(unique); ++k) unique = safe + "-" + std::to_string(k);
     out.push_back(unique);

@@ -29,7 +29,8 @@ struct PartShape {
 };
 std::vector<PartShape> part_shapes(const WorldView& world);
 
-/// Distinct names that are safe in a file name and an HDF5 path, in the order of the names given. taken: not to be used.
+/// Distinct names that are safe in a file name and an HDF5 path, in the order of the names given. taken: not to be
+/// used.
 std::vector<std::string> safe_names(const std::vector<std::string>& names, const std::string& taken);
 
 }  // namespace calx

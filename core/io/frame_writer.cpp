@@ -1,5 +1,5 @@
-// Frames for ParaView: one .vtp of the spheres per frame, one .vtp per part and pose, and frames.pvd that lists them with
-// their times. A part that does not move keeps its file, and the .pvd names it again.
+// Frames for ParaView: one .vtp of the spheres per frame, one .vtp per part and pose, and frames.pvd that lists them
+// with their times. A part that does not move keeps its file, and the .pvd names it again.
 #include <unistd.h>
 
 #include <algorithm>
@@ -58,7 +58,8 @@ std::vector<Entry> read_entries(const std::string& path, double resume_at) {
     const std::string time = attribute_of(e.line, "timestep");
     e.file = attribute_of(e.line, "file");
     const auto parsed = std::from_chars(time.data(), time.data() + time.size(), e.time);
-    if (parsed.ec != std::errc() || e.file.empty()) throw Error(Fault::files, path + ": not a list of frames: " + e.line);
+    if (parsed.ec != std::errc() || e.file.empty())
+      throw Error(Fault::files, path + ": not a list of frames: " + e.line);
     if (e.time <= resume_at) out.push_back(e);
   }
   return out;
@@ -161,7 +162,8 @@ struct FrameWriter::Impl {
   }
 };
 
-FrameWriter::FrameWriter(const std::string& dir, bool particles_h5, double resume_at) : impl_(std::make_unique<Impl>()) {
+FrameWriter::FrameWriter(const std::string& dir, bool particles_h5, double resume_at)
+    : impl_(std::make_unique<Impl>()) {
   Impl& w = *impl_;
   w.dir = dir;
   make_folder(dir + "/frames");

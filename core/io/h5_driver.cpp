@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <mutex>
 #include <new>
 
 #include "io/staged_file.hpp"
@@ -97,6 +98,8 @@ hid_t register_driver() {
 }  // namespace
 
 std::int64_t h5_access_through(StagedFile& file) {
+  static std::mutex registering;
+  const std::lock_guard<std::mutex> lock(registering);
   static hid_t driver = -1;
   // An embedding program may close and reopen the HDF5 library, which forgets drivers.
   if (driver < 0 || H5Iget_type(driver) != H5I_VFL) driver = register_driver();

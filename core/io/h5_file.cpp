@@ -51,33 +51,48 @@ class Handle {
 
 hid_t memory_type(H5Type type) {
   switch (type) {
-    case H5Type::f64: return H5T_NATIVE_DOUBLE;
-    case H5Type::f32: return H5T_NATIVE_FLOAT;
-    case H5Type::u64: return H5T_NATIVE_UINT64;
-    case H5Type::u32: return H5T_NATIVE_UINT32;
-    case H5Type::u8: return H5T_NATIVE_UINT8;
+    case H5Type::f64:
+      return H5T_NATIVE_DOUBLE;
+    case H5Type::f32:
+      return H5T_NATIVE_FLOAT;
+    case H5Type::u64:
+      return H5T_NATIVE_UINT64;
+    case H5Type::u32:
+      return H5T_NATIVE_UINT32;
+    case H5Type::u8:
+      return H5T_NATIVE_UINT8;
   }
   return -1;
 }
 
 hid_t file_type(H5Type type) {
   switch (type) {
-    case H5Type::f64: return H5T_IEEE_F64LE;
-    case H5Type::f32: return H5T_IEEE_F32LE;
-    case H5Type::u64: return H5T_STD_U64LE;
-    case H5Type::u32: return H5T_STD_U32LE;
-    case H5Type::u8: return H5T_STD_U8LE;
+    case H5Type::f64:
+      return H5T_IEEE_F64LE;
+    case H5Type::f32:
+      return H5T_IEEE_F32LE;
+    case H5Type::u64:
+      return H5T_STD_U64LE;
+    case H5Type::u32:
+      return H5T_STD_U32LE;
+    case H5Type::u8:
+      return H5T_STD_U8LE;
   }
   return -1;
 }
 
 const char* type_name(H5Type type) {
   switch (type) {
-    case H5Type::f64: return "64-bit real numbers";
-    case H5Type::f32: return "32-bit real numbers";
-    case H5Type::u64: return "64-bit counts";
-    case H5Type::u32: return "32-bit counts";
-    case H5Type::u8: return "bytes";
+    case H5Type::f64:
+      return "64-bit real numbers";
+    case H5Type::f32:
+      return "32-bit real numbers";
+    case H5Type::u64:
+      return "64-bit counts";
+    case H5Type::u32:
+      return "32-bit counts";
+    case H5Type::u8:
+      return "bytes";
   }
   return "";
 }
@@ -186,8 +201,9 @@ H5File::H5File(const std::string& path, Mode mode, const std::string& name)
   const Quiet quiet;
   const Handle access(h5_access_through(impl_->staged), H5Pclose);
   impl_->need(access >= 0, "HDF5 refuses the file driver");
-  impl_->file = mode == Mode::create ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
-                                     : H5Fopen(path.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access);
+  impl_->file = mode == Mode::create
+                    ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
+                    : H5Fopen(path.c_str(), mode == Mode::read ? H5F_ACC_RDONLY : H5F_ACC_RDWR, access);
   impl_->need(impl_->file >= 0, "not a readable HDF5 file");
 }
 
@@ -207,7 +223,8 @@ void H5File::commit(bool durable) {
 
 const std::string& H5File::name() const { return impl_->name; }
 
-void H5File::write(const std::string& path, H5Type type, const void* data, const Sizes& sizes, const std::string& unit) {
+void H5File::write(const std::string& path, H5Type type, const void* data, const Sizes& sizes,
+                   const std::string& unit) {
   const Quiet quiet;
   {
     const Handle set(H5Dcreate2(impl_->file, rooted(path).c_str(), file_type(type), simple_space(sizes), with_groups(),
@@ -227,8 +244,8 @@ void H5File::write_text(const std::string& path, const std::string& text) {
   const Quiet quiet;
   const Handle type = text_type(text.size());
   const Handle space(H5Screate(text.empty() ? H5S_NULL : H5S_SCALAR), H5Sclose);
-  const Handle set(
-      H5Dcreate2(impl_->file, rooted(path).c_str(), type, space, with_groups(), H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(impl_->file, rooted(path).c_str(), type, space, with_groups(), H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
   impl_->need(set >= 0, "cannot create dataset \"" + path + "\"");
   if (text.empty()) return;
   impl_->need(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0,

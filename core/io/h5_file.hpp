@@ -13,15 +13,25 @@ enum class H5Type { f64, f32, u64, u32, u8 };
 template <class T>
 struct H5TypeOf;
 template <>
-struct H5TypeOf<double> { static constexpr H5Type value = H5Type::f64; };
+struct H5TypeOf<double> {
+  static constexpr H5Type value = H5Type::f64;
+};
 template <>
-struct H5TypeOf<float> { static constexpr H5Type value = H5Type::f32; };
+struct H5TypeOf<float> {
+  static constexpr H5Type value = H5Type::f32;
+};
 template <>
-struct H5TypeOf<std::uint64_t> { static constexpr H5Type value = H5Type::u64; };
+struct H5TypeOf<std::uint64_t> {
+  static constexpr H5Type value = H5Type::u64;
+};
 template <>
-struct H5TypeOf<std::uint32_t> { static constexpr H5Type value = H5Type::u32; };
+struct H5TypeOf<std::uint32_t> {
+  static constexpr H5Type value = H5Type::u32;
+};
 template <>
-struct H5TypeOf<std::uint8_t> { static constexpr H5Type value = H5Type::u8; };
+struct H5TypeOf<std::uint8_t> {
+  static constexpr H5Type value = H5Type::u8;
+};
 
 class H5File {
  public:

@@ -21,9 +21,9 @@ struct Quantity {
   const char* unit;
 };
 constexpr Quantity quantities[] = {
-    {"position", H5Type::f64, true, "m"},    {"velocity", H5Type::f32, true, "m s-1"},
-    {"radius", H5Type::f32, false, "m"},     {"id", H5Type::u32, false, ""},
-    {"particle", H5Type::u32, false, ""},    {"material", H5Type::u32, false, ""},
+    {"position", H5Type::f64, true, "m"}, {"velocity", H5Type::f32, true, "m s-1"},
+    {"radius", H5Type::f32, false, "m"},  {"id", H5Type::u32, false, ""},
+    {"particle", H5Type::u32, false, ""}, {"material", H5Type::u32, false, ""},
     {"contacts", H5Type::u32, false, ""},
 };
 
@@ -136,7 +136,8 @@ void ParticlesH5::append(const WorldView& world, const FrameColumns& frame, cons
   H5File file(path_, H5File::Mode::update);
   const std::uint64_t count = frame.count();
   for (const Quantity& q : quantities) {
-    file.append(value_of(q.name), q.type, data_of(frame, q.name), q.vector ? H5File::Sizes{count, 3} : H5File::Sizes{count});
+    file.append(value_of(q.name), q.type, data_of(frame, q.name),
+                q.vector ? H5File::Sizes{count, 3} : H5File::Sizes{count});
   }
   const std::vector<std::string> groups = groups_of(parts);
   for (std::size_t k = 0; k < groups.size(); ++k) {

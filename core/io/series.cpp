@@ -74,8 +74,8 @@ SeriesFile::SeriesFile(const std::string& path, const std::vector<std::string>& 
     const std::size_t end = text.find('\n');
     if (end != std::string::npos) {
       if (text.compare(0, end + 1, header) != 0) {
-        throw Error(Fault::files, path + ": the columns are \"" + text.substr(0, end) + "\", but the case now gives \"" +
-                                      header.substr(0, header.size() - 1) +
+        throw Error(Fault::files, path + ": the columns are \"" + text.substr(0, end) +
+                                      "\", but the case now gives \"" + header.substr(0, header.size() - 1) +
                                       "\"; resume with the same sensors, or move the file away");
       }
       impl_->size = kept_length(text, end + 1, resume_at);
@@ -93,7 +93,8 @@ SeriesFile::~SeriesFile() = default;
 void SeriesFile::write(double time, const std::vector<double>& values) {
   if (values.size() != impl_->column_count) {
     throw Error(Fault::files, impl_->path + ": a row of " + std::to_string(values.size()) + " values for " +
-                                  std::to_string(impl_->column_count) + " columns at t = " + shortest_text(time) + " s");
+                                  std::to_string(impl_->column_count) + " columns at t = " + shortest_text(time) +
+                                  " s");
   }
   std::string line;
   append_number(line, time);

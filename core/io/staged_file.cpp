@@ -55,11 +55,11 @@ StagedFile::StagedFile(const std::string& path, Mode mode, const std::string& na
 }
 
 StagedFile::~StagedFile() {
-  if (!committed_ && mode_ == Mode::update && ::ftruncate(descriptor_, static_cast<off_t>(old_size_)) != 0) {
+  if (!prepared_ && mode_ == Mode::update && ::ftruncate(descriptor_, static_cast<off_t>(old_size_)) != 0) {
     // The bytes behind the old end are not referred to by anything before it; the file reads as it was.
   }
   ::close(descriptor_);
-  if (!committed_ && mode_ == Mode::create) ::unlink(path_.c_str());
+  if (!prepared_ && mode_ == Mode::create) ::unlink(path_.c_str());
 }
 
 bool StagedFile::read_disk(std::uint64_t at, std::size_t count, unsigned char* out) {
@@ -163,23 +163,28 @@ void StagedFile::apply_pages() {
     const std::uint64_t start = number * page_size;
     if (start >= size_) continue;
     const std::size_t count = static_cast<std::size_t>(std::min(page_size, size_ - start));
-    if (const int failure = write_all(descriptor_, page.data(), count, start)) throw_file_error("write", name_, failure);
+    if (const int failure = write_all(descriptor_, page.data(), count, start))
+      throw_file_error("write", name_, failure);
   }
   if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) throw_file_error("write", name_, errno);
   pages_.clear();
   ::unlink(journal_.c_str());
 }
 
-void StagedFile::commit(bool durable) {
+void StagedFile::prepare() {
   check();
   if (mode_ == Mode::update && !pages_.empty()) write_journal();
-  // From here the journal completes the change even if this process dies.
-  committed_ = true;
+  prepared_ = true;
+}
+
+void StagedFile::commit(bool durable) {
+  prepare();
   try {
     apply_pages();
     if (durable && ::fsync(descriptor_) != 0) throw_file_error("write", name_, errno);
   } catch (...) {
-    if (mode_ == Mode::create) committed_ = false;
+    // A new file is worth nothing in part; the journal of an old one stands, and the next opening completes it.
+    if (mode_ == Mode::create) prepared_ = false;
     throw;
   }
 }

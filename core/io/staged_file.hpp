@@ -1,7 +1,7 @@
 // staged_file.hpp: a file whose changes take effect together at commit() or not at all.
-// Under HDF5 it gives what HDF5 alone does not: a full disk or a kill in the middle of a write leaves the file as it was.
-// New bytes go to disk behind the old end at once; changes to old bytes (some 4 KiB pages of HDF5 metadata per frame) wait
-// in memory, then go through a journal file beside the path.
+// Under HDF5 it gives what HDF5 alone does not: a full disk or a kill in the middle of a write leaves the file as it
+// was. New bytes go to disk behind the old end at once; changes to old bytes (some 4 KiB pages of HDF5 metadata per
+// frame) wait in memory, then go through a journal file beside the path.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,9 @@ class StagedFile {
   int error() const { return error_; }
   /// Throws what error() holds, if anything.
   void check() const;
-  /// durable: the content survives a power failure, not only the end of the process.
+  /// Everything commit() needs is on disk: from here the change takes effect even if this process dies.
+  void prepare();
+  /// Prepares and completes the change. durable: the content survives a power failure, not only the end of the process.
   void commit(bool durable);
 
  private:
@@ -45,10 +47,10 @@ class StagedFile {
   std::string path_, journal_, name_;
   Mode mode_;
   int descriptor_ = -1, error_ = 0;
-  bool committed_ = false;
-  std::uint64_t size_ = 0;       // as the writer sees it
-  std::uint64_t old_size_ = 0;   // on disk at opening
-  std::uint64_t direct_from_ = 0;  // writes from here on go straight to disk
+  bool prepared_ = false;
+  std::uint64_t size_ = 0;               // as the writer sees it
+  std::uint64_t old_size_ = 0;           // on disk at opening
+  std::uint64_t direct_from_ = 0;        // writes from here on go straight to disk
   std::map<std::uint64_t, Page> pages_;  // by page number
 };
 

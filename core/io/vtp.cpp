@@ -11,11 +11,20 @@ std::string xml_text(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -75,9 +84,10 @@ void VtpFile::write(const std::string& path) const {
     head += "</" + tag + ">\n";
   };
   const Array time = array("Float64", "TimeValue", 1, std::vector<double>{time_});
-  head += "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-          "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
-          "NumberOfTuples=\"1\" format=\"appended\" offset=\"0\"/>\n</FieldData>\n";
+  head +=
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
+      "NumberOfTuples=\"1\" format=\"appended\" offset=\"0\"/>\n</FieldData>\n";
   offset = 8 + time.bytes.size();
   head += "<Piece NumberOfPoints=\"" + std::to_string(point_count_) + "\" NumberOfVerts=\"" +
           std::to_string(vertex_count_) + "\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
@@ -100,8 +110,10 @@ void VtpFile::write(const std::string& path) const {
   for (const Array& a : point_data_) block(a);
   for (const Array& a : cell_data_) block(a);
   for (const Array& a : points_) block(a);
-  if (vertex_count_ > 0) for (const Array& a : vertices_) block(a);
-  if (triangle_count_ > 0) for (const Array& a : triangles_) block(a);
+  if (vertex_count_ > 0)
+    for (const Array& a : vertices_) block(a);
+  if (triangle_count_ > 0)
+    for (const Array& a : triangles_) block(a);
   const std::string tail = "\n</AppendedData>\n</VTKFile>\n";
   file.write(tail.data(), tail.size());
   file.commit(false);

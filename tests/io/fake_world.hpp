@@ -42,8 +42,8 @@ class FakeWorld : public calx::WorldView {
     present = {true, true};
   }
 
-  /// n spheres on a line; sphere k: radius 0.01 (k + 1), material k % 2, id 100 + k; clumps: each two consecutive spheres
-  /// belong to one particle.
+  /// n spheres on a line; sphere k: radius 0.01 (k + 1), material k % 2, id 100 + k; clumps: each two consecutive
+  /// spheres belong to one particle.
   void fill(std::size_t n, bool clumps = false) {
     particles_ = calx::Particles{};
     particles_.has_clumps = clumps;

@@ -46,8 +46,7 @@ TEST_CASE("a series holds a header and one row per sample, at once") {
   CHECK(read_text(dir / "series/mass.csv") == "time_s,mass_kg,count\n");
   series.write(0.1, {1.0 / 3, 1e20});
   series.write(12345.6789012, {-std::numeric_limits<double>::quiet_NaN(), -2});
-  CHECK(read_text(dir / "series/mass.csv") ==
-        "time_s,mass_kg,count\n0.1,0.333333333,1e+20\n12345.6789,nan,-2\n");
+  CHECK(read_text(dir / "series/mass.csv") == "time_s,mass_kg,count\n0.1,0.333333333,1e+20\n12345.6789,nan,-2\n");
 }
 
 TEST_CASE("a resumed series drops later rows, whatever rounding did to the time") {
@@ -87,11 +86,15 @@ TEST_CASE("a series refuses other columns and rows of another length") {
   const Scratch dir;
   SeriesFile(dir / "m.csv", {"m_kg"}, -1).write(1, {1});
   const std::string other = file_error([&] { SeriesFile(dir / "m.csv", {"n"}, 2); });
-  CHECK(other == dir / "m.csv: the columns are \"time_s,m_kg\", but the case now gives \"time_s,n\"; resume with the same "
-                       "sensors, or move the file away");
+  CHECK(other ==
+        dir /
+            "m.csv: the columns are \"time_s,m_kg\", but the case now gives \"time_s,n\"; resume with the same "
+            "sensors, or move the file away");
   CHECK(read_text(dir / "m.csv") == "time_s,m_kg\n1,1\n");
   SeriesFile series(dir / "n.csv", {"a", "b"}, -1);
-  CHECK(file_error([&] { series.write(0.5, {1, 2, 3}); }) == dir / "n.csv: a row of 3 values for 2 columns at t = 0.5 s");
+  CHECK(file_error([&] {
+          series.write(0.5, {1, 2, 3});
+        }) == dir / "n.csv: a row of 3 values for 2 columns at t = 0.5 s");
 }
 
 TEST_CASE("a row that does not fit is taken back whole") {
