@@ -63,14 +63,14 @@ struct FrameData {
 };
 struct PartMesh {
   std::string name, geometry, material;
-  std::vector<float> vertices;            // x y z, part frame
+  std::vector<float> vertices;  // x y z, part frame
   std::vector<std::uint32_t> triangles;
 };
 struct FrameSet {
   std::vector<PartMesh> parts;
   std::vector<double> times;
 };
-FrameSet read_frame_set(const std::string& dir);                    // empty when there is no particles.h5
+FrameSet read_frame_set(const std::string& dir);  // empty when there is no particles.h5
 FrameData read_frame(const std::string& dir, std::size_t number);
 
 }  // namespace calx
