@@ -81,9 +81,11 @@ void CaseReader::read_plugins(Object& root) {
   for (const auto& entry : root.section("plugins", "plugin pins by id").entries()) {
     Object o(entry.second, "a plugin pin");
     const Node node = o.need("sha256", "the SHA-256 of the plugin's library");
-    const std::string hash = node.text("64 hexadecimal digits");
+    std::string hash = node.text("64 hexadecimal digits");
+    for (char& c : hash)
+      if (c >= 'A' && c <= 'F') c = static_cast<char>(c - 'A' + 'a');
     if (hash.size() != 64 || hash.find_first_not_of("0123456789abcdef") != std::string::npos)
-      node.fail(shown(node.json()) + "; must be 64 hexadecimal digits in lower case");
+      node.fail(shown(node.json()) + "; must be 64 hexadecimal digits");
     o.done();
     case_.plugin_pins.emplace_back(entry.first, hash);
   }

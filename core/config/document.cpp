@@ -1,6 +1,7 @@
 #include "config/document.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -76,8 +77,8 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return "line " + std::to_string(line) + " column " + std::to_string(column);
 }
 
-// "unexpected '}'; expected string literal" out of the library's long text.
-std::string syntax_reason(const std::string& what) {
+// "unexpected '}'; expected string literal" out of the library's long text, with a hint for common slips.
+std::string syntax_reason(const std::string& what, const std::string& text, std::size_t byte) {
   std::string reason = what;
   const std::size_t colon = reason.find(": ");
   if (colon != std::string::npos) reason = reason.substr(colon + 2);
@@ -90,8 +91,16 @@ std::string syntax_reason(const std::string& what) {
     reason = reason.substr(0, last) + rest;
   }
   if (reason.find("unexpected '}'") != std::string::npos || reason.find("unexpected ']'") != std::string::npos)
-    reason += "; is there a comma too many before it?";
-  else if (what.find("'N'") != std::string::npos || what.find("NaN") != std::string::npos || what.find("nf'") != std::string::npos)
+    return reason + "; is there a comma too many before it?";
+  // The word at the place of the error.
+  std::size_t begin = std::min(byte > 0 ? byte - 1 : 0, text.size());
+  std::size_t end = begin;
+  const auto letter = [&](std::size_t at) { return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])); };
+  while (begin > 0 && letter(begin - 1)) --begin;
+  while (letter(end)) ++end;
+  std::string word = text.substr(begin, end - begin);
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (word == "nan" || word == "inf" || word == "infinity")
     reason += "; JSON has no NaN or infinity, give a finite number";
   return reason;
 }
@@ -105,7 +114,7 @@ Json parse_json(const std::string& text, const std::string& file) {
     out = Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) { return place(depth, event, parsed); },
                       true, true);
   } catch (const Json::parse_error& e) {
-    throw Error(Fault::settings, file + " " + line_and_column(text, e.byte) + ": not valid JSON; " + syntax_reason(e.what()));
+    throw Error(Fault::settings, file + " " + line_and_column(text, e.byte) + ": not valid JSON; " + syntax_reason(e.what(), text, e.byte));
   } catch (const Json::out_of_range& e) {
     const std::string what = e.what();
     throw Error(Fault::settings, file + ": not valid JSON; " + what.substr(what.find("] ") + 2) +
@@ -138,6 +147,11 @@ Document::Document(const std::string& text, const std::string& file,
     if (!start->is_string()) fail("/relative_to", shown(*start) + " is not text; must be the path of a folder");
     folder_ = absolute_path(start->get<std::string>());
   }
+}
+
+Document::Document(const Parameters& parameters, const std::string& file)
+    : file_(file), folder_(parameters.folder), root_(parse_json(parameters.json, file + " " + parameters.pointer)) {
+  if (folder_.empty()) folder_ = fs::absolute(file).parent_path().lexically_normal().string();
 }
 
 Json Document::load(const std::string& text, const std::string& file, std::vector<std::string>& chain) {

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "config/settings.hpp"
+
 namespace calx {
 
 using Json = nlohmann::ordered_json;  // materials, parts and motions keep the order the user wrote them in
@@ -25,6 +27,8 @@ class Document {
  public:
   Document(const std::string& text, const std::string& file,
            const std::vector<std::pair<std::string, std::string>>& overrides);
+  /// A part of a case that was read before; pointers of its nodes start with parameters.pointer.
+  Document(const Parameters& parameters, const std::string& file);
 
   const Json& root() const { return root_; }
   const std::string& file() const { return file_; }
