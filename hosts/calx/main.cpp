@@ -1,2 +1,172 @@
-// main.cpp: the command line.
-int main() { return 0; }
+// main.cpp: the command line: options to calls, errors to messages and exit codes.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "bench.hpp"
+#include "calx/abi.h"
+#include "plugin/plugin.hpp"
+#include "progress.hpp"
+#include "report/report.hpp"
+#include "sim/run.hpp"
+
+namespace {
+
+std::atomic<bool> stop_requested{false};
+void on_signal(int) {
+  // A second Ctrl-C ends the program at once.
+  if (stop_requested.exchange(true)) _exit(130);
+}
+
+/// "/time/end=2.0" -> pointer and value.
+std::pair<std::string, std::string> split_override(const std::string& text) {
+  const auto at = text.find('=');
+  if (at == std::string::npos || text.empty() || text[0] != '/')
+    throw calx::Error(calx::Fault::usage, "--set " + text + ": expected /json/pointer=value, for instance /time/end=2.0");
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+struct CaseFlags {
+  std::vector<std::string> set, plugin_path;
+  calx::RunOptions run;
+  std::string device = "auto", precision = "double";
+  long long seed = -1;
+  bool quiet = false, json = false, no_report = false;
+
+  void add_common(CLI::App& app) {
+    app.add_option("case", run.case_path, "case file (JSON)")->required();
+    app.add_option("--set", set, "override, repeatable: /json/pointer=value");
+    app.add_option("--threads", run.simulation.threads, "threads (default: all cores)")->check(CLI::PositiveNumber);
+    app.add_option("--device", device, "auto or cpu");
+    app.add_option("--precision", precision, "double");
+    app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(CLI::NonNegativeNumber);
+    app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+  }
+  calx::RunOptions options() {
+    if (device != "auto" && device != "cpu")
+      throw calx::Error(calx::Fault::usage, "--device " + device + ": this version computes on \"cpu\" only");
+    if (precision != "double")
+      throw calx::Error(calx::Fault::usage, "--precision " + precision + ": this version computes in \"double\" only");
+    for (const auto& s : set) run.overrides.push_back(split_override(s));
+    if (seed >= 0) run.overrides.emplace_back("/seed", std::to_string(seed));
+    run.simulation.plugin_path = plugin_path;
+    return run;
+  }
+};
+
+int run(CaseFlags& flags) {
+  calx::RunOptions options = flags.options();
+  calx::Progress progress(flags.quiet, flags.json);
+  options.progress = [&](const std::string& line) { progress.line(line); };
+  options.message = [&](const std::string& line) { progress.message(line); };
+  options.stop = &stop_requested;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  // A full disk shows as an error of the write, not as the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const std::string folder = calx::run_folder(options);
+  auto report = [&] {
+    if (flags.no_report || !std::filesystem::exists(folder + "/summary.json")) return;
+    progress.message("report: " + calx::write_report(folder));
+  };
+  try {
+    calx::run_case(options);
+  } catch (const calx::Error& e) {
+    progress.end();
+    // A report of what was computed; the error that ended the run is what counts.
+    if (e.fault() == calx::Fault::numerics || e.fault() == calx::Fault::interrupted) try {
+        report();
+      } catch (const calx::Error&) {
+      }
+    throw;
+  }
+  progress.end();
+  report();
+  return 0;
+}
+
+int guarded(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);
+    return code == 0 ? 0 : static_cast<int>(calx::Fault::usage);
+  } catch (const calx::Error& e) {
+    std::fprintf(stderr, "calx: %s\n", e.what());
+    return e.exit_code();
+  } catch (const std::filesystem::filesystem_error& e) {
+    std::fprintf(stderr, "calx: %s\n", e.what());
+    return static_cast<int>(calx::Fault::files);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "calx: out of memory; the case needs more than this machine has (see calx check)\n");
+    return static_cast<int>(calx::Fault::numerics);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Calx: how powder fills a canister, by discrete elements"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("calx ") + calx::version() + " (" + calx::git_revision() + "), ABI " +
+                                        std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + " draft " +
+                                        std::to_string(CALX_ABI_DRAFT));
+
+  CaseFlags run_flags, check_flags;
+  auto* run_command = app.add_subcommand("run", "run a case and write its report");
+  run_flags.add_common(*run_command);
+  run_command->add_option("-o,--out", run_flags.run.out, "folder of the results (default: CASE.out)");
+  run_command->add_option("--until", run_flags.run.until, "stop at this simulated time, s")->check(CLI::NonNegativeNumber);
+  run_command->add_flag("--resume", run_flags.run.resume, "go on from the last checkpoint");
+  run_command->add_flag("--overwrite", run_flags.run.overwrite, "replace an earlier run in the folder");
+  run_command->add_flag("--quiet", run_flags.quiet, "no progress");
+  run_command->add_flag("--json", run_flags.json, "progress as JSON lines on stderr");
+  run_command->add_flag("--no-report", run_flags.no_report, "do not write report.html");
+  run_command->callback([&] { run(run_flags); });
+
+  auto* check_command = app.add_subcommand("check", "validate a case and show what a run would cost");
+  bool print_schema = false;
+  check_flags.add_common(*check_command);
+  check_command->get_option("case")->required(false);
+  check_command->add_flag("--print-schema", print_schema, "print the JSON Schema of a case");
+  check_command->callback([&] {
+    if (print_schema) {
+      std::printf("%s\n", calx::case_schema().c_str());
+      return;
+    }
+    if (check_flags.run.case_path.empty()) throw calx::Error(calx::Fault::usage, "check: a case file is needed");
+    std::fputs(calx::check_case(check_flags.options()).c_str(), stdout);
+  });
+
+  auto* report_command = app.add_subcommand("report", "write report.html of a finished or running run");
+  std::string report_folder;
+  report_command->add_option("dir", report_folder, "folder of the run")->required();
+  report_command->callback([&] { std::printf("%s\n", calx::write_report(report_folder).c_str()); });
+
+  auto* plugin_command = app.add_subcommand("plugin", "list, describe and explain plugins");
+  plugin_command->require_subcommand(1);
+  std::vector<std::string> plugin_path;
+  plugin_command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+  std::string plugin_id;
+  auto* list_command = plugin_command->add_subcommand("list", "every plugin found, and what was refused and why");
+  list_command->callback(
+      [&] { std::fputs(calx::plugin_list_text(calx::plugin_search_path(plugin_path)).c_str(), stdout); });
+  auto* describe_command = plugin_command->add_subcommand("describe", "parameters with units, ranges and presets");
+  describe_command->add_option("id", plugin_id, "plugin id")->required();
+  describe_command->callback(
+      [&] { std::fputs(calx::plugin_describe_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
+  auto* schema_command = plugin_command->add_subcommand("schema", "JSON Schema of a plugin's parameters");
+  schema_command->add_option("id", plugin_id, "plugin id")->required();
+  schema_command->callback(
+      [&] { std::fputs(calx::plugin_schema_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
+
+  calx::add_bench_command(app);
+  return guarded(app, argc, argv);
+}
