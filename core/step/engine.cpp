@@ -56,6 +56,8 @@ void Engine::prepare(int threads) {
   stale_ = true;
 }
 
+int Engine::team() const { return std::max(1, std::min(threads_, static_cast<int>(pairs_.chunks.size()))); }
+
 const LawList& Engine::law(std::uint32_t a, std::uint32_t b) const {
   const LawList* list = laws[a * material_count + b];
   if (!list) missing_law(a, b);
@@ -193,7 +195,7 @@ void Engine::begin(double dt) {
   if (stale_) rebuild(dt, count_changed_);
   const double start = now_seconds();
   for (auto& r : results_) r.gravity_work = 0, r.stale = false;
-#pragma omp parallel for schedule(static) num_threads(threads_)
+#pragma omp parallel for schedule(static) num_threads(team())
   for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
     drift_verlet(c, dt);
     guard_pass(c);
@@ -220,7 +222,7 @@ GuardReport Engine::finish(double t, double dt) {
   double contacts_done = start;
   const std::size_t chunk_count = pairs_.chunks.size();
   std::exception_ptr failure;
-#pragma omp parallel num_threads(threads_)
+#pragma omp parallel num_threads(team())
   {
     Worker& worker = *workers_[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(dynamic, 1)

@@ -127,6 +127,8 @@ class Engine {
   void drift_verlet(std::size_t chunk, double dt);
   void finish_verlet(std::size_t chunk, double dt);
   void guard_pass(std::size_t chunk);
+  /// Threads worth waking: no more than there are chunks.
+  int team() const;
   const LawList& law(std::uint32_t a, std::uint32_t b) const;
   [[noreturn]] void missing_law(std::uint32_t a, std::uint32_t b) const;
 
