@@ -1,5 +1,5 @@
 /* bad_plugin.h: a correct particle force, each part of which the including file may replace by a macro with what it does
- * wrong. */
+ * wrong or otherwise. */
 #include <calx/all.h>
 #include <string.h>
 
@@ -17,6 +17,9 @@
 #endif
 #ifndef BAD_TABLE_SIZE
 #define BAD_TABLE_SIZE sizeof(calx_particle_force)
+#endif
+#ifndef BAD_KIND
+#define BAD_KIND CALX_PARTICLE_FORCE
 #endif
 #ifndef BAD_EVAL
 #define BAD_EVAL eval
@@ -52,7 +55,7 @@ static void CALX_CALL eval(const calx_instance* self, const calx_particle_block*
 #endif
 static const calx_particle_force table = {BAD_TABLE_SIZE, BAD_DRAFT, BAD_EVAL};
 
-static const calx_descriptor descriptor = {sizeof(calx_descriptor), 0, BAD_ID, CALX_PARTICLE_FORCE, "Bad", "1.0.0",
+static const calx_descriptor descriptor = {sizeof(calx_descriptor), 0, BAD_ID, BAD_KIND, "Bad", "1.0.0",
                                            "Calx", "Apache-2.0", "A plugin for tests.", BAD_REQUIRED, 0, 0, 0, 0};
 
 static uint32_t CALX_CALL count(void) { return 1; }
@@ -65,7 +68,7 @@ static calx_status CALX_CALL create(const char* id, const calx_host* host, const
 static void CALX_CALL destroy(calx_instance* instance) { (void)instance; }
 static const void* CALX_CALL get_interface(calx_instance* instance, const char* interface_id) {
   (void)instance, (void)table;
-  return strcmp(interface_id, CALX_PARTICLE_FORCE) == 0 ? BAD_TABLE : 0;
+  return strcmp(interface_id, BAD_KIND) == 0 ? BAD_TABLE : 0;
 }
 static const calx_factory factory = {count, get_descriptor, create, destroy, get_interface};
 
