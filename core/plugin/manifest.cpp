@@ -163,7 +163,6 @@ std::vector<PluginManifest> read_manifest(const std::string& path) {
     const json& plugins = member(root, "plugins", "");
     if (!plugins.is_array() || plugins.empty()) throw Refused{"/plugins: not a list of at least one plugin"};
     common.refused = fault;
-    if (fault.empty()) common.library = library_path(root, fs::path(path).parent_path());
     for (std::size_t k = 0; k < plugins.size(); ++k) {
       const std::string where = "/plugins/" + std::to_string(k);
       if (!plugins[k].is_object()) throw Refused{where + ": not an object"};
@@ -180,6 +179,11 @@ std::vector<PluginManifest> read_manifest(const std::string& path) {
       if (one.refused.empty() && std::find(kinds.begin(), kinds.end(), one.kind) == kinds.end())
         one.refused = "of the kind " + one.kind + ", which this host does not know; it knows " + quoted_list(kinds);
       out.push_back(std::move(one));
+    }
+    // Last, so that a case naming an id is told that its library is missing, not that the id is unknown.
+    if (fault.empty()) {
+      const std::string library = library_path(root, fs::path(path).parent_path());
+      for (PluginManifest& one : out) one.library = library;
     }
   } catch (const Refused& refused) {
     const bool named = !refused.reason.empty() && refused.reason.front() == '/';

@@ -1,0 +1,13 @@
+# Installs the plugin boundary alone: cmake --install <build> --component abi. Headers, find_package(CalxAbi), calx-abi.pc.
+include(CMakePackageConfigHelpers)
+set(abi ${CMAKE_CURRENT_LIST_DIR}/..)
+file(STRINGS ${abi}/include/calx/abi.h lines REGEX "^#define CALX_ABI_(MAJOR|MINOR) ")
+string(REGEX REPLACE ".*CALX_ABI_MAJOR ([0-9]+).*CALX_ABI_MINOR ([0-9]+).*" "\\1.\\2" CALX_ABI_VERSION "${lines}")
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/CalxAbiConfigVersion.cmake VERSION ${CALX_ABI_VERSION}
+                                 COMPATIBILITY SameMajorVersion ARCH_INDEPENDENT)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/calx-abi.pc.in ${CMAKE_BINARY_DIR}/calx-abi.pc @ONLY)
+install(DIRECTORY ${abi}/include/calx ${abi}/cpp/calx DESTINATION include COMPONENT abi)
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/CalxAddPlugin.cmake ${CMAKE_CURRENT_LIST_DIR}/CalxAbiConfig.cmake
+              ${CMAKE_BINARY_DIR}/CalxAbiConfigVersion.cmake
+        DESTINATION lib/cmake/CalxAbi COMPONENT abi)
+install(FILES ${CMAKE_BINARY_DIR}/calx-abi.pc DESTINATION lib/pkgconfig COMPONENT abi)
