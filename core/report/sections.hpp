@@ -1,0 +1,35 @@
+// sections.hpp: the sections of a run's page, in the order a process engineer reads them.
+#pragma once
+#include <set>
+#include <string>
+
+#include "report/key_figures.hpp"
+#include "report/page.hpp"
+
+namespace calx {
+
+/// What every section works from. drawn: sensors that have their charts already.
+struct Sections {
+  const RunFolder& run;
+  const KeyFigures figures;
+  Page& page;
+  std::set<std::string> drawn{};
+
+  void header();
+  void overview();       // checks, assumptions, deviations, what is missing
+  void pictures();       // stills, section, playback
+  void dosing();         // mass against time and cycle, flow
+  void pile();           // profiles, height maps, angle of repose
+  void ledgers();        // energy and mass
+  void loads();          // forces, torques, power on parts
+  void other_sensors();  // whatever was not drawn yet
+  void time_step();      // limits and speed
+  void provenance();
+  void case_text();
+
+  /// One chart per unit of the sensor's columns, but for those named.
+  std::string sensor_charts(const SensorSeries& sensor, const std::set<std::string>& leave_out = {});
+  std::vector<ChartMark> event_marks() const;
+};
+
+}  // namespace calx
