@@ -62,6 +62,11 @@ function(calx_add_plugin name)
     target_link_options(${name} PRIVATE -Wl,-z,defs -static-libgcc $<$<LINK_LANGUAGE:CXX>:-static-libstdc++>)
   endif()
   set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CALX_PLUGIN_DIR})
+  # The entry is the only symbol a plugin exports; templates of the static C++ library would leak otherwise, and two
+  # plugins in one process could then share each other's copies.
+  file(CONFIGURE OUTPUT ${out}/exports.map CONTENT "{ global: calx_plugin_entry; local: *; };\n" @ONLY)
+  target_link_options(${name} PRIVATE -Wl,--version-script=${out}/exports.map)
+  set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS ${out}/exports.map)
   set(CALX_PLUGIN_LIBRARY ${name}${CMAKE_SHARED_MODULE_SUFFIX})
   configure_file(${A_MANIFEST} ${CALX_PLUGIN_DIR}/${name}.plugin.json @ONLY)
   if(NOT A_NO_INSTALL)

@@ -1,7 +1,7 @@
 // motion_table.cpp: any measured or designed motion as a table of angle and displacement over time, calx.motion-table.
+#include <calx/rigid_motion.hpp>
 #include <limits>
 
-#include "rigid_motion.hpp"
 #include "table.hpp"
 
 namespace {

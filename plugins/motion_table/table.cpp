@@ -2,10 +2,9 @@
 #include "table.hpp"
 
 #include <algorithm>
+#include <calx/rigid_motion.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
-
-#include "rigid_motion.hpp"
 
 namespace motion_table {
 namespace {

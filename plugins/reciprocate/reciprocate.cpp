@@ -1,7 +1,6 @@
 // reciprocate.cpp: to-and-fro rotation with dwell, calx.reciprocate: the rotor of a valve that turns by +-180 degrees.
+#include <calx/rigid_motion.hpp>
 #include <limits>
-
-#include "rigid_motion.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // swing_open.cpp: one rotation from an angle to another, calx.open-close: butterfly valve, swing gate, flap.
-#include "rigid_motion.hpp"
+#include <calx/rigid_motion.hpp>
 
 namespace {
 

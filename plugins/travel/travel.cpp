@@ -1,5 +1,5 @@
 // travel.cpp: a straight displacement, calx.travel: lowering a canister, a slide gate, lifting a cylinder.
-#include "rigid_motion.hpp"
+#include <calx/rigid_motion.hpp>
 
 namespace {
 

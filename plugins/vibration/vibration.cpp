@@ -1,7 +1,6 @@
 // vibration.cpp: harmonic displacement, calx.vibration: vibratory compaction, a shaken sieve.
+#include <calx/rigid_motion.hpp>
 #include <limits>
-
-#include "rigid_motion.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
-// rigid_motion.hpp: what the motion plugins share: the table of calx.motion/1 in C++, axis and angle to quaternion, and
-// a trip out and back with a choice of speed profiles. Header only, C++11. The same file stands beside each motion
-// plugin, so that a folder can be copied or deleted alone; a test keeps the copies equal.
+// SPDX-License-Identifier: MIT
+// calx/rigid_motion.hpp: optional C++11 helper for motion plugins; header only. The table of calx.motion/1 in C++, axis
+// and angle to quaternion, and a trip out and back with a choice of speed profiles.
 #ifndef CALX_RIGID_MOTION_HPP
 #define CALX_RIGID_MOTION_HPP
 #include <calx/plugin.hpp>
