@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "base/error.hpp"
@@ -196,6 +197,12 @@ double to_si(double value, const std::string& unit, const std::string& si) {
   const double inverse = to.factor / from.factor;
   if (inverse > 1 && inverse == std::floor(inverse)) return value / inverse;
   return value * (from.factor / to.factor);
+}
+
+std::string brief_quantity(double value, const std::string& unit) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return unit.empty() || unit == "1" ? text : std::string(text) + " " + unit;
 }
 
 }  // namespace calx

@@ -29,5 +29,7 @@ double to_si(double value, const std::string& unit, const std::string& si);
 /// "2.5 mm", "-0.3" for unit "1" or ""; the shortest digits that read back to the same number.
 std::string format_quantity(double value, const std::string& unit);
 std::string format_number(double value);
+/// Four digits, for lines people read: "0.2201 kg".
+std::string brief_quantity(double value, const std::string& unit);
 
 }  // namespace calx

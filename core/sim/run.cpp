@@ -112,7 +112,7 @@ class Run {
       if (!note.empty()) say(note);
       sim_.load(*state);
       at = sim_.time();
-      say("resumed at t = " + format_quantity(at, "s"));
+      say("resumed at t = " + brief_quantity(at, "s"));
     }
     write_text_atomically(dir_ + "/case.json", resolved_);
     facts_.case_sha256 = sha256(resolved_);
@@ -154,7 +154,7 @@ class Run {
         save();
         checkpoint_clock_.done(t, dt);
       }
-      if (o_.stop && o_.stop->load()) throw Error(Fault::interrupted, "interrupted at t = " + format_quantity(t, "s"));
+      if (o_.stop && o_.stop->load()) throw Error(Fault::interrupted, "interrupted at t = " + brief_quantity(t, "s"));
       // Reading the clock costs more than a small step.
       if (sim_.step_count() % 16 != 0) continue;
       const double now = seconds();
@@ -230,7 +230,7 @@ class Run {
 
   std::string last_checkpoint_text() const {
     if (checkpoint_time_ < 0) return "; no checkpoint was written";
-    return "; last checkpoint at t = " + format_quantity(checkpoint_time_, "s") + ", go on with --resume";
+    return "; last checkpoint at t = " + brief_quantity(checkpoint_time_, "s") + ", go on with --resume";
   }
 
   RunOptions o_;
@@ -263,10 +263,10 @@ std::string check_case(const RunOptions& options) {
   auto line = [&](const std::string& text) { out += text + "\n"; };
   line(c.title.empty() ? c.file : c.title);
   line("");
-  line("Time step " + format_quantity(sim.time_step(), "s") + (c.time.step > 0 ? " (given)" : "") + "; limits:");
+  line("Time step " + brief_quantity(sim.time_step(), "s") + (c.time.step > 0 ? " (given)" : "") + "; limits:");
   for (const auto& l : sim.step_limits())
     line("  " + std::string(l.binds ? "* " : "  ") + l.name + std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') +
-         format_quantity(l.seconds, "s") + "  " + l.where + (l.binds ? "  <- binds" : ""));
+         brief_quantity(l.seconds, "s") + "  " + l.where + (l.binds ? "  <- binds" : ""));
   double mass = 0, particles = 0, spheres = 0;
   const auto& shapes = sim.world().particles().shapes;
   for (const auto& s : c.sources) {
@@ -281,23 +281,23 @@ std::string check_case(const RunOptions& options) {
     mass += n * each;
     particles += n;
     spheres += n * static_cast<double>(members);
-    line("Source \"" + s.name + "\": " + format_quantity(n * each, "kg") + ", about " + format_number(std::round(n)) +
+    line("Source \"" + s.name + "\": " + brief_quantity(n * each, "kg") + ", about " + format_number(std::round(n)) +
          " particles of \"" + s.shape + "\"");
   }
   const double steps = c.time.end / sim.time_step(), work = steps * spheres;
   // Measured on two cores of a server of 2024 with Hertz-Mindlin and EpAM; an order of magnitude for other machines.
   constexpr double kSphereStepsPerCore = 5e6;
   const int threads = options.simulation.threads > 0 ? options.simulation.threads : omp_get_max_threads();
-  line("Size: " + format_quantity(mass, "kg") + ", " + format_number(std::round(particles)) + " particles, " +
+  line("Size: " + brief_quantity(mass, "kg") + ", " + format_number(std::round(particles)) + " particles, " +
        format_number(std::round(spheres)) + " spheres, " + format_number(std::round(steps)) + " steps, " +
        format_number(std::round(particles * steps / 1e6) * 1e6) + " particle-steps");
-  line("Memory: about " + format_quantity(std::round(spheres * 600 / 1e6), "1") + " MB");
+  line("Memory: about " + brief_quantity(std::round(spheres * 600 / 1e6), "1") + " MB");
   line("Cost: about " + clock_text(work / (kSphereStepsPerCore * threads)) + " on " + std::to_string(threads) +
        " threads at " + format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
   line("Device: cpu, double precision, " + std::to_string(threads) + " threads; every plugin runs there");
   line("Materials:");
   for (const auto& m : c.materials) {
-    line("  " + m.name + (m.density > 0 ? ", density " + format_quantity(m.density, "kg/m^3") : ""));
+    line("  " + m.name + (m.density > 0 ? ", density " + brief_quantity(m.density, "kg/m^3") : ""));
   }
   line("Contacts:");
   for (const auto& contact : c.contacts)

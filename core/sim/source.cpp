@@ -89,6 +89,7 @@ bool Source::wants_more(double next_mass) const {
 }
 
 double Source::requested_mass() const {
+  if (!settings_.file.empty() || !settings_.positions.empty()) return delivered_;
   return settings_.mass > 0 ? settings_.mass : static_cast<double>(settings_.count) * mass_of(settings_.size.scale);
 }
 
@@ -151,7 +152,7 @@ std::vector<Seed> Source::given() const {
                 if (overlap > 0.05 * std::min(s.second, o.second))
                   throw Error(Fault::settings,
                               file_ + " " + settings_.pointer + ": particles number " + std::to_string(other) + " and " +
-                                  std::to_string(k) + " overlap by " + format_quantity(overlap, "m") + " at the start, " +
+                                  std::to_string(k) + " overlap by " + brief_quantity(overlap, "m") + " at the start, " +
                                   format_number(std::round(100 * overlap / std::min(s.second, o.second))) +
                                   " % of the radius; at most 5 % is accepted, move them apart");
               }
@@ -190,8 +191,8 @@ std::vector<Seed> Source::fill(const Obstacles& obstacles) {
   if (sites.size() < scales.size()) {
     const double fits = mass * static_cast<double>(sites.size()) / static_cast<double>(scales.size());
     throw Error(Fault::settings,
-                file_ + " " + settings_.pointer + ": the region cannot hold " + format_quantity(mass, "kg") + " (" +
-                    std::to_string(scales.size()) + " particles); without overlaps about " + format_quantity(fits, "kg") +
+                file_ + " " + settings_.pointer + ": the region cannot hold " + brief_quantity(mass, "kg") + " (" +
+                    std::to_string(scales.size()) + " particles); without overlaps about " + brief_quantity(fits, "kg") +
                     " (" + std::to_string(sites.size()) +
                     " particles) fit. Make the region larger, ask for less, or give a rate");
   }

@@ -11,6 +11,8 @@
 namespace calx {
 namespace {
 
+std::string brief(double v) { return brief_quantity(v, "1"); }
+
 constexpr double kPi = 3.14159265358979323846;
 
 struct Elastic {
@@ -74,8 +76,8 @@ std::vector<StepLimit> time_step_limits(const StepInputs& in) {
       const double shear = ea->young / (2 * (1 + ea->poisson));
       const double rayleigh =
           kPi * small.radius * std::sqrt(ma.density / shear) / (0.1631 * ea->poisson + 0.8766);
-      limits.push_back({"rayleigh", format_number(100 * c.time.rayleigh_fraction) + " % of " + format_number(rayleigh) +
-                                        " s, " + ma.name + " sphere of radius " + format_number(small.radius) + " m",
+      limits.push_back({"rayleigh", brief(100 * c.time.rayleigh_fraction) + " % of " + brief(rayleigh) +
+                                        " s, " + ma.name + " sphere of radius " + brief(small.radius) + " m",
                         c.time.rayleigh_fraction * rayleigh, false});
     }
     for (std::size_t b = 0; b < n; ++b) {
@@ -94,7 +96,7 @@ std::vector<StepLimit> time_step_limits(const StepInputs& in) {
         const double k = 4.0 / 3 * e_star * std::sqrt(r_eff), v = in.particle_speed;
         overlap = std::pow(5 * m_eff * v * v / (4 * k), 0.4);
         const double collision = 2.87 * std::pow(m_eff * m_eff / (r_eff * e_star * e_star * v), 0.2);
-        limits.push_back({"hertz", "1/20 of the collision time at " + format_number(v) + " m/s, " + list->label,
+        limits.push_back({"hertz", "1/20 of the collision time at " + brief(v) + " m/s, " + list->label,
                           collision / 20, false});
       }
       double inverse_square = 0;
@@ -104,12 +106,12 @@ std::vector<StepLimit> time_step_limits(const StepInputs& in) {
         if (dt > 0) inverse_square += 1 / (dt * dt);
       }
       if (inverse_square > 0)
-        limits.push_back({"law", list->label + " at an overlap of " + format_number(overlap) + " m",
+        limits.push_back({"law", list->label + " at an overlap of " + brief(overlap) + " m",
                           1 / std::sqrt(inverse_square), false});
     }
   }
   if (in.wall_speed > 0 && smallest_radius < 1e299)
-    limits.push_back({"wall", "part \"" + in.fastest_part + "\" at " + format_number(in.wall_speed) +
+    limits.push_back({"wall", "part \"" + in.fastest_part + "\" at " + brief(in.wall_speed) +
                                   " m/s moves 2 % of the smallest radius",
                       0.02 * smallest_radius / in.wall_speed, false});
   auto least = std::min_element(limits.begin(), limits.end(),
@@ -132,9 +134,9 @@ double choose_step(const StepInputs& in, const std::vector<StepLimit>& limits) {
                         : limit.name == "wall"   ? 5 * limit.seconds
                                                  : 4 * limit.seconds;
     if (c.time.step > most)
-      throw Error(Fault::settings, c.file + " /time/step: " + format_quantity(c.time.step, "s") +
-                                       " is above the limit of " + format_quantity(most, "s") + " (" + limit.name + ": " +
-                                       limit.where + "); at most " + format_quantity(limit.seconds, "s") +
+      throw Error(Fault::settings, c.file + " /time/step: " + brief_quantity(c.time.step, "s") +
+                                       " is above the limit of " + brief_quantity(most, "s") + " (" + limit.name + ": " +
+                                       limit.where + "); at most " + brief_quantity(limit.seconds, "s") +
                                        " is advised, or leave \"step\" out");
   }
   return c.time.step;

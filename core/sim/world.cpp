@@ -247,8 +247,8 @@ void World::insert_due(double t) {
     }
     if (!seeds.empty()) engine.inserted();
     if (source.exhausted())
-      say("source \"" + source.settings().name + "\" has delivered " + format_quantity(source.delivered_mass(), "kg") +
-          " of " + format_quantity(source.requested_mass(), "kg") + " (" + std::to_string(source.delivered_count()) +
+      say("source \"" + source.settings().name + "\" has delivered " + brief_quantity(source.delivered_mass(), "kg") +
+          " of " + brief_quantity(source.requested_mass(), "kg") + " (" + std::to_string(source.delivered_count()) +
           " particles)");
   }
 }
