@@ -1,8 +1,8 @@
 /* epam.law.h: elasto-plastic adhesive contact. Six laws from one text: exponent 1 or 1.5, without and with rolling
  * resistance, and with an adhesive exponent of its own (always with the rolling columns).
- *   epam_n1, epam_n15                   10 history values
- *   epam_n1_rolling, epam_n15_rolling   13
- *   epam_n1_chi, epam_n15_chi           13
+ *   epam_n1, epam_n15                   7 history values
+ *   epam_n1_rolling, epam_n15_rolling   10
+ *   epam_n1_chi, epam_n15_chi           10
  * Columns: name, unit, lowest, highest, preset, flags, meaning. Equations and symbols: README.md. n is the exponent of
  * the loading branches, chi that of the adhesive branch, delta_p the plastic overlap. */
 #define epam_pair_ROWS(X, k1_unit)                                                                                  \
