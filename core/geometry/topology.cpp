@@ -140,7 +140,7 @@ bool inside(const Box& inner, const Box& outer) {
          outer.hi.y > inner.hi.y && outer.hi.z > inner.hi.z;
 }
 
-/// Open shells: the minority is inverted. Closed shells point outwards, a cavity within another shell inwards.
+/// Open shells: the minority is inverted. Outermost closed shells must point outwards.
 void count_inverted(const Elements& e, const std::vector<std::vector<Neighbour>>& neighbours, MeshFaults& faults) {
   std::vector<signed char> flip(e.triangles.size(), -1);
   std::vector<Shell> shells;
@@ -153,8 +153,8 @@ void count_inverted(const Elements& e, const std::vector<std::vector<Neighbour>>
     if (shell.closed && shell.volume != 0) {
       std::size_t around = 0;
       for (const Shell& other : shells) around += other.closed && inside(shell.box, other.box);
-      // Turned by flip the volume is that of the first triangle's side; odd depth is a cavity. A whole shell of odd
-      // depth may also be a second body in a hollow one, so there only disagreement within the shell counts.
+      // Within another closed shell either winding may be meant (a cavity, or a body in a vessel): there only
+      // disagreement within the shell counts.
       if (around == 0) flipped_is_wrong = shell.volume > 0;
     }
     for (const std::uint32_t t : shell.triangles) {

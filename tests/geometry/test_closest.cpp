@@ -171,6 +171,29 @@ TEST_CASE("inside a box a corner gives three contacts, an edge two, a face one, 
   CHECK(out[1].distance == Approx(0.03));
 }
 
+TEST_CASE("inside a box the contacts are exactly the faces within reach, outside there is one at most") {
+  const Surface s = cube(1);
+  Random random(23, 5);
+  for (int k = 0; k < 5000; ++k) {
+    const Vec3 p{random.uniform(-0.3, 1.3), random.uniform(-0.3, 1.3), random.uniform(-0.3, 1.3)};
+    const double r = random.uniform(0.05, 0.45);
+    std::vector<double> expected;
+    const bool is_inside = p.x > 0 && p.y > 0 && p.z > 0 && p.x < 1 && p.y < 1 && p.z < 1;
+    Vec3 q;
+    for (int a = 0; a < 3; ++a) {
+      q[a] = std::clamp(p[a], 0.0, 1.0);
+      if (is_inside && p[a] < r) expected.push_back(p[a]);
+      if (is_inside && 1 - p[a] < r) expected.push_back(1 - p[a]);
+    }
+    const double away = norm(p - q);
+    if (!is_inside && away < r) expected.push_back(away);
+    std::sort(expected.begin(), expected.end());
+    const auto c = contacts(s, p, r);
+    REQUIRE(c.size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) CHECK(c[i].distance == Approx(expected[i]).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("outside a box a corner and an edge give one contact whose normal points at the centre") {
   const Surface s = cube(1);
   const Vec3 d{-0.01, -0.02, -0.015};

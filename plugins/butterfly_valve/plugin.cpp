@@ -1,0 +1,3 @@
+#include "butterfly_valve.hpp"
+
+CALX_PLUGIN(Disc, Housing)
