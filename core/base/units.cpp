@@ -21,17 +21,28 @@ struct Symbol {
 };
 
 const Symbol symbols[] = {
-    {"m", 1, {0, 1, 0, 0, 0, 0, 0}, true},          {"g", 1e-3, {1, 0, 0, 0, 0, 0, 0}, true},
-    {"s", 1, {0, 0, 1, 0, 0, 0, 0}, true},          {"A", 1, {0, 0, 0, 1, 0, 0, 0}, true},
-    {"K", 1, {0, 0, 0, 0, 1, 0, 0}, true},          {"mol", 1, {0, 0, 0, 0, 0, 1, 0}, true},
-    {"rad", 1, {0, 0, 0, 0, 0, 0, 1}, true},        {"Hz", 1, {0, 0, -1, 0, 0, 0, 0}, true},
-    {"N", 1, {1, 1, -2, 0, 0, 0, 0}, true},         {"Pa", 1, {1, -1, -2, 0, 0, 0, 0}, true},
-    {"J", 1, {1, 2, -2, 0, 0, 0, 0}, true},         {"W", 1, {1, 2, -3, 0, 0, 0, 0}, true},
-    {"C", 1, {0, 0, 1, 1, 0, 0, 0}, true},          {"V", 1, {1, 2, -3, -1, 0, 0, 0}, true},
-    {"L", 1e-3, {0, 3, 0, 0, 0, 0, 0}, true},       {"t", 1000, {1, 0, 0, 0, 0, 0, 0}, false},
-    {"min", 60, {0, 0, 1, 0, 0, 0, 0}, false},      {"h", 3600, {0, 0, 1, 0, 0, 0, 0}, false},
-    {"deg", pi / 180, {0, 0, 0, 0, 0, 0, 1}, false}, {"rev", 2 * pi, {0, 0, 0, 0, 0, 0, 1}, false},
-    {"rpm", 2 * pi / 60, {0, 0, -1, 0, 0, 0, 1}, false}, {"bar", 1e5, {1, -1, -2, 0, 0, 0, 0}, true},
+    {"m", 1, {0, 1, 0, 0, 0, 0, 0}, true},
+    {"g", 1e-3, {1, 0, 0, 0, 0, 0, 0}, true},
+    {"s", 1, {0, 0, 1, 0, 0, 0, 0}, true},
+    {"A", 1, {0, 0, 0, 1, 0, 0, 0}, true},
+    {"K", 1, {0, 0, 0, 0, 1, 0, 0}, true},
+    {"mol", 1, {0, 0, 0, 0, 0, 1, 0}, true},
+    {"rad", 1, {0, 0, 0, 0, 0, 0, 1}, true},
+    {"Hz", 1, {0, 0, -1, 0, 0, 0, 0}, true},
+    {"N", 1, {1, 1, -2, 0, 0, 0, 0}, true},
+    {"Pa", 1, {1, -1, -2, 0, 0, 0, 0}, true},
+    {"J", 1, {1, 2, -2, 0, 0, 0, 0}, true},
+    {"W", 1, {1, 2, -3, 0, 0, 0, 0}, true},
+    {"C", 1, {0, 0, 1, 1, 0, 0, 0}, true},
+    {"V", 1, {1, 2, -3, -1, 0, 0, 0}, true},
+    {"L", 1e-3, {0, 3, 0, 0, 0, 0, 0}, true},
+    {"t", 1000, {1, 0, 0, 0, 0, 0, 0}, false},
+    {"min", 60, {0, 0, 1, 0, 0, 0, 0}, false},
+    {"h", 3600, {0, 0, 1, 0, 0, 0, 0}, false},
+    {"deg", pi / 180, {0, 0, 0, 0, 0, 0, 1}, false},
+    {"rev", 2 * pi, {0, 0, 0, 0, 0, 0, 1}, false},
+    {"rpm", 2 * pi / 60, {0, 0, -1, 0, 0, 0, 1}, false},
+    {"bar", 1e5, {1, -1, -2, 0, 0, 0, 0}, true},
     {"%", 0.01, {0, 0, 0, 0, 0, 0, 0}, false},
 };
 
@@ -39,12 +50,14 @@ struct Prefix {
   char name;
   double factor;
 };
-const Prefix prefixes[] = {{'n', 1e-9}, {'u', 1e-6}, {'m', 1e-3}, {'c', 1e-2}, {'d', 1e-1}, {'k', 1e3}, {'M', 1e6}, {'G', 1e9}};
+const Prefix prefixes[] = {{'n', 1e-9}, {'u', 1e-6}, {'m', 1e-3}, {'c', 1e-2},
+                           {'d', 1e-1}, {'k', 1e3},  {'M', 1e6},  {'G', 1e9}};
 
 std::vector<std::string> known_symbols() {
   std::vector<std::string> names;
   for (const Symbol& s : symbols) names.push_back(s.name);
-  for (const char* often : {"kg", "mm", "cm", "um", "km", "ms", "kN", "mN", "kPa", "MPa", "GPa", "mJ", "kJ", "kW", "mL", "mg"})
+  for (const char* often :
+       {"kg", "mm", "cm", "um", "km", "ms", "kN", "mN", "kPa", "MPa", "GPa", "mJ", "kJ", "kW", "mL", "mg"})
     names.push_back(often);
   return names;
 }
@@ -68,7 +81,9 @@ class Parser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& why) const { throw Error(Fault::settings, "unit \"" + text_ + "\": " + why); }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw Error(Fault::settings, "unit \"" + text_ + "\": " + why);
+  }
   void skip() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
   }
@@ -123,7 +138,8 @@ class Parser {
   Unit symbol(std::string name) const {
     if (name.empty()) fail("a unit is missing");
     // The micro sign and the Greek letter mu, as UTF-8.
-    if (name.size() > 2 && (name.compare(0, 2, "\xc2\xb5") == 0 || name.compare(0, 2, "\xce\xbc") == 0)) name.replace(0, 2, "u");
+    if (name.size() > 2 && (name.compare(0, 2, "\xc2\xb5") == 0 || name.compare(0, 2, "\xce\xbc") == 0))
+      name.replace(0, 2, "u");
     for (const Symbol& s : symbols)
       if (name == s.name) return unit_of(s, 1);
     for (const Symbol& s : symbols)
@@ -164,12 +180,32 @@ std::string format_quantity(double value, const std::string& unit) {
 std::string dimension_name(const Unit& unit) {
   static const struct {
     const char *unit, *name;
-  } names[] = {{"1", "plain number"}, {"m", "length"}, {"kg", "mass"}, {"s", "time"}, {"rad", "angle"}, {"m^2", "area"},
-               {"m^3", "volume"}, {"m/s", "speed"}, {"m/s^2", "acceleration"}, {"rad/s", "angular speed"},
-               {"rad/s^2", "angular acceleration"}, {"1/s", "frequency"}, {"kg/m^3", "density"}, {"kg/s", "mass flow"},
-               {"N", "force"}, {"N/m", "stiffness"}, {"Pa", "pressure"}, {"J", "energy"}, {"W", "power"},
-               {"K", "temperature"}, {"A", "electric current"}, {"C", "electric charge"}, {"V", "voltage"},
-               {"mol", "amount of substance"}, {"m^3/s", "volume flow"}, {"Pa s", "viscosity"}};
+  } names[] = {{"1", "plain number"},
+               {"m", "length"},
+               {"kg", "mass"},
+               {"s", "time"},
+               {"rad", "angle"},
+               {"m^2", "area"},
+               {"m^3", "volume"},
+               {"m/s", "speed"},
+               {"m/s^2", "acceleration"},
+               {"rad/s", "angular speed"},
+               {"rad/s^2", "angular acceleration"},
+               {"1/s", "frequency"},
+               {"kg/m^3", "density"},
+               {"kg/s", "mass flow"},
+               {"N", "force"},
+               {"N/m", "stiffness"},
+               {"Pa", "pressure"},
+               {"J", "energy"},
+               {"W", "power"},
+               {"K", "temperature"},
+               {"A", "electric current"},
+               {"C", "electric charge"},
+               {"V", "voltage"},
+               {"mol", "amount of substance"},
+               {"m^3/s", "volume flow"},
+               {"Pa s", "viscosity"}};
   for (const auto& n : names)
     if (same_dimension(unit, parse_unit(n.unit))) return n.name;
   static const char* const base[7] = {"kg", "m", "s", "A", "K", "mol", "rad"};
@@ -191,7 +227,8 @@ double to_si(double value, const std::string& unit, const std::string& si) {
       return (std::string("aeiou").find(name[0]) == std::string::npos ? "a " : "an ") + name +
              (text.empty() || text == "1" ? "" : " in " + text);
     };
-    throw Error(Fault::settings, "unit \"" + unit + "\" measures " + noun(from, "") + "; " + noun(to, si) + " is needed");
+    throw Error(Fault::settings,
+                "unit \"" + unit + "\" measures " + noun(from, "") + "; " + noun(to, si) + " is needed");
   }
   // One rounding instead of two where the factor is a negative power of ten: 2.5 mm is 0.0025 to the last bit.
   const double inverse = to.factor / from.factor;

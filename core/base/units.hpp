@@ -19,7 +19,8 @@ Unit parse_unit(const std::string& text);
 
 bool same_dimension(const Unit& a, const Unit& b);
 
-/// "length", "mass", "angular speed", ...; for others the SI unit it has: "quantity in kg/s^2.5"; "plain number" for none.
+/// "length", "mass", "angular speed", ...; for others the SI unit it has: "quantity in kg/s^2.5"; "plain number" for
+/// none.
 std::string dimension_name(const Unit& unit);
 
 /// Value converted to SI. Throws Error(Fault::settings) when unit is not of the dimension of si:

@@ -102,7 +102,8 @@ void CaseReader::read_events(Object& root) {
 void CaseReader::check_event_cycles() const {
   std::vector<std::string> path;
   const auto find = [&](const std::string& name) {
-    return std::find_if(case_.events.begin(), case_.events.end(), [&](const EventSettings& e) { return e.name == name; });
+    return std::find_if(case_.events.begin(), case_.events.end(),
+                        [&](const EventSettings& e) { return e.name == name; });
   };
   std::vector<std::string> safe;
   const auto visit = [&](const auto& self, const EventSettings& e) -> void {

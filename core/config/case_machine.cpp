@@ -16,7 +16,8 @@ void CaseReader::read_parts(Object& root) {
     check_name(name, p.name);
     for (const PartSettings& other : case_.parts)
       if (other.name == p.name) name.fail("another part is called \"" + p.name + "\"; names of parts must differ");
-    p.geometry = object.need("geometry", "the id of a geometry, such as \"calx.cylinder\"").text("the id of a geometry");
+    p.geometry =
+        object.need("geometry", "the id of a geometry, such as \"calx.cylinder\"").text("the id of a geometry");
     p.parameters = object.parameters();
     p.material = object.need("material", "the name of a material").name_of("material", names_.materials);
     if (const auto motion = object.find("motion")) p.motion = motion->name_of("motion", names_.motions);
@@ -70,8 +71,10 @@ void CaseReader::read_stages(Object& root) {
     s.add = object.names("add", "part", names_.parts);
     s.remove = object.names("remove", "part", names_.parts);
     s.start = object.names("start", "motion", names_.motions);
-    if (const auto until = object.find("until")) s.until = event(*until, "stage " + s.name);
-    else if (&node != &nodes.back()) object.need("until", "the event or condition that ends it; only the last stage may last to the end");
+    if (const auto until = object.find("until"))
+      s.until = event(*until, "stage " + s.name);
+    else if (&node != &nodes.back())
+      object.need("until", "the event or condition that ends it; only the last stage may last to the end");
     object.done();
     case_.stages.push_back(s);
   }
@@ -102,8 +105,9 @@ void CaseReader::read_sensors(Object& root) {
       if (other.name == s.name) name.fail("another sensor is called \"" + s.name + "\"; names of sensors must differ");
     const auto plugin = object.find("plugin");
     if (plugin && object.has("kind")) plugin->fail("a sensor has a \"kind\" or a \"plugin\"; must have one");
-    s.kind = plugin ? plugin->text("the id of a sensor")
-                    : object.need("kind", "the kind of sensor, such as \"mass\", or \"plugin\"").text("a kind of sensor");
+    s.kind = plugin
+                 ? plugin->text("the id of a sensor")
+                 : object.need("kind", "the kind of sensor, such as \"mass\", or \"plugin\"").text("a kind of sensor");
     s.every = object.need("every", "the simulated time between samples in s").number("s", Allow::above_zero);
     s.parameters = node.parameters();
     if (const auto region = object.find("region")) {

@@ -23,7 +23,8 @@ void CaseReader::read_materials(Object& root) {
     if (const auto young = object.find("young")) young->number("Pa", Allow::above_zero);
     if (const auto poisson = object.find("poisson")) {
       const double nu = poisson->number("1");
-      if (!(nu > -1 && nu <= 0.5)) poisson->fail(format_number(nu) + " is out of range; must be above -1 and at most 0.5");
+      if (!(nu > -1 && nu <= 0.5))
+        poisson->fail(format_number(nu) + " is out of range; must be above -1 and at most 0.5");
     }
     m.properties = node.parameters();
     case_.materials.push_back(m);
@@ -37,7 +38,8 @@ void CaseReader::read_contacts(Object& root) {
     Object object(node, "a contact");
     const Node between = object.need("between", "the names of the two materials");
     const std::vector<Node> pair = between.items("two names of materials");
-    if (pair.size() != 2) between.fail(shown(between.json()) + "; must be the names of two materials, which may be the same");
+    if (pair.size() != 2)
+      between.fail(shown(between.json()) + "; must be the names of two materials, which may be the same");
     for (int k = 0; k < 2; ++k) c.between[k] = pair[static_cast<std::size_t>(k)].name_of("material", names_.materials);
     for (const ContactSettings& other : case_.contacts)
       if ((other.between[0] == c.between[0] && other.between[1] == c.between[1]) ||
@@ -56,7 +58,8 @@ void CaseReader::read_contacts(Object& root) {
     };
     if (const auto laws = object.find("laws")) {
       for (const char* key : {"law", "parameters"})
-        if (object.has(key)) node.fail("holds \"laws\" and \"" + std::string(key) + "\"; must hold one law or a list of laws");
+        if (object.has(key))
+          node.fail("holds \"laws\" and \"" + std::string(key) + "\"; must hold one law or a list of laws");
       for (const Node& entry : laws->items("laws")) {
         Object law(entry, "a law");
         c.laws.push_back(law_of(law));
@@ -122,13 +125,16 @@ SizeSettings CaseReader::read_size(const Node& node) {
                                .choice("a distribution", {"uniform", "normal", "lognormal", "list"});
   if (kind == 3) {
     s.kind = Kind::list;
-    const Node scales = object.need("scales", "the list of scale factors"), shares = object.need("shares", "the shares by mass");
+    const Node scales = object.need("scales", "the list of scale factors"),
+               shares = object.need("shares", "the shares by mass");
     for (const Node& n : scales.items("scale factors")) s.scales.push_back(n.number("1", Allow::above_zero));
     double sum = 0;
-    for (const Node& n : shares.items("shares by mass")) sum += s.shares.emplace_back(n.number("1", Allow::not_negative));
+    for (const Node& n : shares.items("shares by mass"))
+      sum += s.shares.emplace_back(n.number("1", Allow::not_negative));
     if (s.scales.empty()) scales.fail("is an empty list; must hold at least one scale factor");
     if (s.scales.size() != s.shares.size())
-      shares.fail(shown(shares.json()) + " for " + std::to_string(s.scales.size()) + " scales; must be one share for each");
+      shares.fail(shown(shares.json()) + " for " + std::to_string(s.scales.size()) +
+                  " scales; must be one share for each");
     if (!(sum > 0)) shares.fail("all shares are 0; one must be above 0");
     for (double& share : s.shares) share /= sum;
     s.lowest = *std::min_element(s.scales.begin(), s.scales.end());
@@ -142,8 +148,9 @@ SizeSettings CaseReader::read_size(const Node& node) {
     } else {
       s.kind = kind == 1 ? Kind::normal : Kind::lognormal;
       s.scale = object.number(kind == 1 ? "mean" : "median", "1", 1, Allow::above_zero);
-      s.deviation = object.need("deviation", kind == 1 ? "the standard deviation of the scale factor"
-                                                       : "the standard deviation of ln(scale factor)")
+      s.deviation = object
+                        .need("deviation", kind == 1 ? "the standard deviation of the scale factor"
+                                                     : "the standard deviation of ln(scale factor)")
                         .number("1", Allow::above_zero);
       // Cut-offs three deviations away hold 99.7 % of the draws.
       const double spread = std::exp(3 * s.deviation);
@@ -151,7 +158,8 @@ SizeSettings CaseReader::read_size(const Node& node) {
       if (!(low > 0) && !object.has("lowest"))
         node.fail("three deviations below the mean is a scale of " + format_number(low) + "; give \"lowest\" above 0");
       s.lowest = object.number("lowest", "1", low, Allow::above_zero);
-      s.highest = object.number("highest", "1", kind == 1 ? s.scale + 3 * s.deviation : s.scale * spread, Allow::above_zero);
+      s.highest =
+          object.number("highest", "1", kind == 1 ? s.scale + 3 * s.deviation : s.scale * spread, Allow::above_zero);
     }
     if (!(s.lowest < s.highest))
       node.fail("lowest " + format_number(s.lowest) + " is not below highest " + format_number(s.highest) +
@@ -168,7 +176,8 @@ void CaseReader::read_positions(Object& source, SourceSettings& s) {
   }
   const auto check_length = [&](const Node& list, std::size_t length) {
     if (length != s.positions.size())
-      list.fail(shown(list.json()) + " for " + std::to_string(s.positions.size()) + " positions; must be one for each position");
+      list.fail(shown(list.json()) + " for " + std::to_string(s.positions.size()) +
+                " positions; must be one for each position");
   };
   if (const auto list = source.find("orientations")) {
     for (const Node& n : list->items("quaternions [w, x, y, z]")) {
@@ -201,7 +210,8 @@ void CaseReader::read_source_amount(Object& source, SourceSettings& s) {
     s.file = document_.absolute_path(file->text("the path of a CSV file"));
     if (!std::filesystem::exists(s.file))
       throw Error(Fault::files, document_.file_of(file->pointer()) + " " + file->pointer() + ": " + s.file +
-                                    " does not exist; must be the path of a CSV file, relative to " + document_.folder());
+                                    " does not exist; must be the path of a CSV file, relative to " +
+                                    document_.folder());
   }
   if (!s.positions.empty() || file) {
     if (!s.positions.empty() && file) file->fail("a source has \"positions\" or a \"file\" of them; must have one");
@@ -215,7 +225,8 @@ void CaseReader::read_source_amount(Object& source, SourceSettings& s) {
     s.region.is_named = false;
   } else {
     const std::string name = region->name_of("region", names_.regions);
-    s.region = *std::find_if(case_.regions.begin(), case_.regions.end(), [&](const RegionSettings& r) { return r.name == name; });
+    s.region = *std::find_if(case_.regions.begin(), case_.regions.end(),
+                             [&](const RegionSettings& r) { return r.name == name; });
   }
   if (mass && count) count->fail("a source has a \"mass\" or a \"count\"; must have one");
   if (mass) s.mass = mass->number("kg", Allow::above_zero);
@@ -243,7 +254,8 @@ void CaseReader::read_sources(Object& root) {
     s.material = material.name_of("material", names_.materials);
     for (const MaterialSettings& m : case_.materials)
       if (m.name == s.material && m.density == 0)
-        document_.fail(m.pointer + "/density", "is missing; the density in kg/m^3 of particles of source \"" + s.name + "\"");
+        document_.fail(m.pointer + "/density",
+                       "is missing; the density in kg/m^3 of particles of source \"" + s.name + "\"");
     if (const auto size = object.find("size")) s.size = read_size(*size);
     read_source_amount(object, s);
     s.velocity = object.vector("velocity", "m/s", {});

@@ -86,7 +86,8 @@ RegionSettings CaseReader::region(const Node& node, const std::string& name) {
   std::string found;
   for (const std::string& kind : kinds)
     if (object.has(kind)) {
-      if (!found.empty()) node.fail("holds \"" + found + "\" and \"" + kind + "\"; must hold one of " + quoted_list(kinds));
+      if (!found.empty())
+        node.fail("holds \"" + found + "\" and \"" + kind + "\"; must hold one of " + quoted_list(kinds));
       found = kind;
     }
   object.done();
@@ -127,7 +128,8 @@ std::string CaseReader::region_name(const Node& node, const std::string& made_up
   RegionSettings r = region(node, made_up);
   r.is_named = false;
   for (const RegionSettings& other : case_.regions)
-    if (other.name == made_up) node.fail("needs the name \"" + made_up + "\", which another region has; rename that one");
+    if (other.name == made_up)
+      node.fail("needs the name \"" + made_up + "\", which another region has; rename that one");
   case_.regions.push_back(r);
   return made_up;
 }
@@ -142,8 +144,8 @@ void CaseReader::read_regions(Object& root) {
 void check_corners(const Node& node, const Vec3& lowest, const Vec3& highest) {
   for (int k = 0; k < 3; ++k)
     if (!(lowest[k] < highest[k]))
-      node.fail(std::string("min ") + "xyz"[k] + " = " + format_quantity(lowest[k], "m") + " is not below max " + "xyz"[k] +
-                " = " + format_quantity(highest[k], "m") + "; every min must be below its max");
+      node.fail(std::string("min ") + "xyz"[k] + " = " + format_quantity(lowest[k], "m") + " is not below max " +
+                "xyz"[k] + " = " + format_quantity(highest[k], "m") + "; every min must be below its max");
 }
 
 }  // namespace calx

@@ -38,12 +38,14 @@ void CaseReader::read_domain(Object& root) {
   check_corners(o.node(), d.box.lo, d.box.hi);
   if (const auto periodic = o.find("periodic")) {
     const std::vector<Node> flags = periodic->items("three times true or false");
-    if (flags.size() != 3) periodic->fail(shown(periodic->json()) + "; must be three times true or false, for x, y and z");
+    if (flags.size() != 3)
+      periodic->fail(shown(periodic->json()) + "; must be three times true or false, for x, y and z");
     for (std::size_t k = 0; k < 3; ++k) d.periodic[k] = flags[k].boolean();
   } else {
     document_.fill(o.pointer() + "/periodic", {false, false, false});
   }
-  const std::size_t leave = o.choice("on_leave", "a way to treat particles that leave", {"error", "delete", "count"}, 0);
+  const std::size_t leave =
+      o.choice("on_leave", "a way to treat particles that leave", {"error", "delete", "count"}, 0);
   d.on_leave = leave == 0   ? DomainSettings::OnLeave::error
                : leave == 1 ? DomainSettings::OnLeave::remove
                             : DomainSettings::OnLeave::count;
@@ -53,11 +55,13 @@ void CaseReader::read_domain(Object& root) {
 void CaseReader::read_time(Object& root) {
   Object o(root.need("time", "must hold at least \"end\", the end of the run in s"), "the time settings");
   TimeSettings& t = case_.time;
-  t.integrator = o.choice("integrator", "an integrator", {"euler", "verlet"}, 0) == 0 ? TimeSettings::Integrator::euler
-                                                                                     : TimeSettings::Integrator::verlet;
+  t.integrator = o.choice("integrator", "an integrator", {"euler", "verlet"}, 0) == 0
+                     ? TimeSettings::Integrator::euler
+                     : TimeSettings::Integrator::verlet;
   t.rayleigh_fraction = o.number("rayleigh_fraction", "1", t.rayleigh_fraction, Allow::above_zero);
   if (t.rayleigh_fraction > 1)
-    o.find("rayleigh_fraction")->fail(format_number(t.rayleigh_fraction) + " is out of range; must be above 0 and at most 1");
+    o.find("rayleigh_fraction")
+        ->fail(format_number(t.rayleigh_fraction) + " is out of range; must be above 0 and at most 1");
   t.step = o.number("step", "s", 0, Allow::not_negative);
   t.end = o.need("end", "the end of the run in s").number("s", Allow::not_negative);
   if (const auto e = o.find("end_event")) t.end_event = event(*e, "end of the run");
@@ -108,8 +112,10 @@ CaseSettings CaseReader::read() {
     document_.fill("/title", case_.title);
   }
   case_.gravity = root.vector("gravity", "m/s^2", case_.gravity);
-  if (const auto seed = root.find("seed")) case_.seed = seed->whole(0);
-  else document_.fill("/seed", case_.seed);
+  if (const auto seed = root.find("seed"))
+    case_.seed = seed->whole(0);
+  else
+    document_.fill("/seed", case_.seed);
   // Order matters: events first, so that named ones stand before those made up by others; regions before sources.
   read_regions(root);
   read_events(root);
@@ -127,7 +133,8 @@ CaseSettings CaseReader::read() {
   read_sensors(root);
   read_output(root);
   case_.overlap_limit = root.number("overlap_limit", "1", case_.overlap_limit, Allow::above_zero);
-  for (const Node& n : root.items("assumptions", "texts")) case_.assumptions.push_back(n.text("one assumption in words"));
+  for (const Node& n : root.items("assumptions", "texts"))
+    case_.assumptions.push_back(n.text("one assumption in words"));
   read_plugins(root);
   root.done();
   check_event_cycles();

@@ -71,7 +71,8 @@ class Place {
 
 std::string line_and_column(const std::string& text, std::size_t byte) {
   const std::size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
-  const std::size_t line = 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<long>(end), '\n'));
+  const std::size_t line =
+      1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<long>(end), '\n'));
   const std::size_t start = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
   const std::size_t column = start == std::string::npos ? end + 1 : end - start;
   return "line " + std::to_string(line) + " column " + std::to_string(column);
@@ -95,7 +96,9 @@ std::string syntax_reason(const std::string& what, const std::string& text, std:
   // The word at the place of the error.
   std::size_t begin = std::min(byte > 0 ? byte - 1 : 0, text.size());
   std::size_t end = begin;
-  const auto letter = [&](std::size_t at) { return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])); };
+  const auto letter = [&](std::size_t at) {
+    return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at]));
+  };
   while (begin > 0 && letter(begin - 1)) --begin;
   while (letter(end)) ++end;
   std::string word = text.substr(begin, end - begin);
@@ -107,21 +110,25 @@ std::string syntax_reason(const std::string& what, const std::string& text, std:
 
 }  // namespace
 
-Json parse_json(const std::string& text, const std::string& file) {
+Json parse_json(const std::string& text, const std::string& file, const std::string& pointer) {
+  const std::string where = file + (pointer.empty() ? "" : " " + pointer);
   Place place;
   Json out;
   try {
-    out = Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) { return place(depth, event, parsed); },
-                      true, true);
+    out = Json::parse(
+        text, [&](int depth, Json::parse_event_t event, Json& parsed) { return place(depth, event, parsed); }, true,
+        true);
   } catch (const Json::parse_error& e) {
-    throw Error(Fault::settings, file + " " + line_and_column(text, e.byte) + ": not valid JSON; " + syntax_reason(e.what(), text, e.byte));
+    throw Error(Fault::settings, where + " " + line_and_column(text, e.byte) + ": not valid JSON; " +
+                                     syntax_reason(e.what(), text, e.byte));
   } catch (const Json::out_of_range& e) {
     const std::string what = e.what();
-    throw Error(Fault::settings, file + ": not valid JSON; " + what.substr(what.find("] ") + 2) +
+    throw Error(Fault::settings, where + ": not valid JSON; " + what.substr(what.find("] ") + 2) +
                                      "; numbers must lie within +-1.797e308");
   }
   if (!place.duplicate.empty())
-    throw Error(Fault::settings, file + " " + place.duplicate + ": this key stands twice in its object; keep one of them");
+    throw Error(Fault::settings,
+                file + " " + pointer + place.duplicate + ": this key stands twice in its object; keep one of them");
   return out;
 }
 
@@ -150,7 +157,7 @@ Document::Document(const std::string& text, const std::string& file,
 }
 
 Document::Document(const Parameters& parameters, const std::string& file)
-    : file_(file), folder_(parameters.folder), root_(parse_json(parameters.json, file + " " + parameters.pointer)) {
+    : file_(file), folder_(parameters.folder), root_(parse_json(parameters.json, file, parameters.pointer)) {
   if (folder_.empty()) folder_ = fs::absolute(file).parent_path().lexically_normal().string();
 }
 
@@ -161,12 +168,14 @@ Json Document::load(const std::string& text, const std::string& file, std::vecto
   const auto found = own.find("extends");
   if (found == own.end()) return own;
   const std::string at = file + " /extends: ";
-  if (!found->is_string()) throw Error(Fault::settings, at + shown(*found) + " is not text; must be the path of a case");
+  if (!found->is_string())
+    throw Error(Fault::settings, at + shown(*found) + " is not text; must be the path of a case");
   const std::string name = found->get<std::string>();
   const fs::path path = fs::path(file).parent_path() / name;
   const std::string canonical = fs::weakly_canonical(fs::absolute(path)).string();
   if (std::find(chain.begin(), chain.end(), canonical) != chain.end())
-    throw Error(Fault::settings, at + "\"" + name + "\" leads back to itself; a chain of cases must end in one that extends none");
+    throw Error(Fault::settings,
+                at + "\"" + name + "\" leads back to itself; a chain of cases must end in one that extends none");
   chain.push_back(canonical);
   std::string base_text;
   try {
@@ -204,10 +213,12 @@ void Document::apply(const std::string& pointer, const std::string& value) {
     if (here->is_null()) *here = Json::object();
     parent = here;
     if (here->is_array()) {
-      const bool digits = !token.empty() && token.size() < 10 && token.find_first_not_of("0123456789") == std::string::npos;
+      const bool digits =
+          !token.empty() && token.size() < 10 && token.find_first_not_of("0123456789") == std::string::npos;
       const std::size_t index = token == "-" ? here->size() : digits ? std::stoul(token) : here->size() + 1;
       if (index > here->size() || (index == here->size() && token != "-"))
-        refuse(done + " is a list of " + std::to_string(here->size()) + "; \"" + token + "\" must be an index from 0, or - to append");
+        refuse(done + " is a list of " + std::to_string(here->size()) + "; \"" + token +
+               "\" must be an index from 0, or - to append");
       if (index == here->size()) here->push_back(nullptr);
       here = &(*here)[index];
     } else if (here->is_object()) {
@@ -236,6 +247,9 @@ std::string Document::file_of(const std::string& pointer) const {
   const Json::json_pointer place(pointer);
   for (const auto& source : sources_)
     if (source.second.contains(place)) return source.first;
+  // An object that an override made on its way.
+  for (const std::string& p : overridden_)
+    if (p.compare(0, pointer.size() + 1, pointer + "/") == 0) return "--set";
   return file_;
 }
 

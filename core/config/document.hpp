@@ -20,8 +20,8 @@ std::string pointer_token(std::size_t index);
 std::string shown(const Json& value);
 
 /// JSON with comments. Throws Error(Fault::settings) with file, line and column for bad syntax, with the pointer for a
-/// key that stands twice in one object.
-Json parse_json(const std::string& text, const std::string& file);
+/// key that stands twice in one object. pointer: where the text stands in the file.
+Json parse_json(const std::string& text, const std::string& file, const std::string& pointer = "");
 
 class Document {
  public:

@@ -11,10 +11,27 @@ namespace calx {
 namespace {
 
 void check_keywords(const Json& schema, const std::string& owner, const std::string& place) {
-  static const std::vector<std::string> known = {
-      "type", "properties", "required", "additionalProperties", "items", "minItems", "maxItems", "enum", "minimum", "maximum",
-      "exclusiveMinimum", "exclusiveMaximum", "default", "format", "unit", "title", "description", "examples", "$schema", "$id",
-      "$comment"};
+  static const std::vector<std::string> known = {"type",
+                                                 "properties",
+                                                 "required",
+                                                 "additionalProperties",
+                                                 "items",
+                                                 "minItems",
+                                                 "maxItems",
+                                                 "enum",
+                                                 "minimum",
+                                                 "maximum",
+                                                 "exclusiveMinimum",
+                                                 "exclusiveMaximum",
+                                                 "default",
+                                                 "format",
+                                                 "unit",
+                                                 "title",
+                                                 "description",
+                                                 "examples",
+                                                 "$schema",
+                                                 "$id",
+                                                 "$comment"};
   const auto refuse = [&](const std::string& why) {
     throw Error(Fault::plugin, owner + ": extra_schema " + (place.empty() ? "/" : place) + ": " + why);
   };
@@ -30,13 +47,17 @@ void check_keywords(const Json& schema, const std::string& owner, const std::str
     }
     if (item.key() != "properties") continue;
     if (!item.value().is_object()) refuse("\"properties\" must be an object");
-    for (const auto& property : item.value().items()) check_keywords(property.value(), owner, at + pointer_token(property.key()));
+    for (const auto& property : item.value().items())
+      check_keywords(property.value(), owner, at + pointer_token(property.key()));
   }
 }
 
 bool has_type(const Json& value, const std::string& type) {
   if (type == "number") return value.is_number();
-  if (type == "integer") return value.is_number_integer() || (value.is_number_float() && value == Json(static_cast<double>(static_cast<std::int64_t>(value.get<double>()))));
+  if (type == "integer")
+    return value.is_number_integer() ||
+           (value.is_number_float() &&
+            value == Json(static_cast<double>(static_cast<std::int64_t>(value.get<double>()))));
   if (type == "string") return value.is_string();
   if (type == "boolean") return value.is_boolean();
   if (type == "array") return value.is_array();
@@ -54,8 +75,13 @@ std::vector<std::string> types_of(const Json& schema) {
 std::string in_words(const std::vector<std::string>& types) {
   std::string out;
   for (const std::string& t : types) {
-    const std::string word = t == "number" ? "a number" : t == "integer" ? "a whole number" : t == "string" ? "text"
-                             : t == "boolean" ? "true or false" : t == "array" ? "a list" : t == "object" ? "an object" : "null";
+    const std::string word = t == "number"    ? "a number"
+                             : t == "integer" ? "a whole number"
+                             : t == "string"  ? "text"
+                             : t == "boolean" ? "true or false"
+                             : t == "array"   ? "a list"
+                             : t == "object"  ? "an object"
+                                              : "null";
     out += (out.empty() ? "" : " or ") + word;
   }
   return out;
@@ -111,13 +137,15 @@ Json read_object(const Node& node, const Json& schema, const std::string& owner,
   if (!is_top)
     for (const auto& item : node.json().items()) {
       if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
-      if (!open && schema.contains("properties")) child(item.key()).fail("unknown key for " + owner + "; " + did_you_mean(item.key(), known));
+      if (!open && schema.contains("properties"))
+        child(item.key()).fail("unknown key for " + owner + "; " + did_you_mean(item.key(), known));
       out[item.key()] = item.value();
     }
   if (schema.contains("required"))
     for (const Json& key : schema["required"])
       if (!out.contains(key.get<std::string>()))
-        node.document().fail(node.pointer() + pointer_token(key.get<std::string>()), "is missing; " + owner + " needs it");
+        node.document().fail(node.pointer() + pointer_token(key.get<std::string>()),
+                             "is missing; " + owner + " needs it");
   return out;
 }
 
@@ -148,8 +176,9 @@ Json read_value(const Node& node, const Json& schema, const std::string& owner, 
     const std::size_t least = schema.value("minItems", std::size_t(0));
     const std::size_t most = schema.value("maxItems", static_cast<std::size_t>(-1));
     if (value.size() < least || value.size() > most) {
-      const std::string right = least == most ? std::to_string(least) : value.size() < least ? "at least " + std::to_string(least)
-                                                                                           : "at most " + std::to_string(most);
+      const std::string right = least == most          ? std::to_string(least)
+                                : value.size() < least ? "at least " + std::to_string(least)
+                                                       : "at most " + std::to_string(most);
       node.fail(shown(value) + "; " + owner + " needs " + right);
     }
     if (schema.contains("items")) {
@@ -170,7 +199,8 @@ Json read_value(const Node& node, const Json& schema, const std::string& owner, 
 Json parse_extra_schema(const char* text, const std::string& owner) {
   if (text == nullptr) return Json::object();
   Json schema = Json::parse(text, nullptr, false);
-  if (schema.is_discarded()) throw Error(Fault::plugin, owner + ": extra_schema is not JSON; must be an object with \"properties\"");
+  if (schema.is_discarded())
+    throw Error(Fault::plugin, owner + ": extra_schema is not JSON; must be an object with \"properties\"");
   check_keywords(schema, owner, "");
   return schema;
 }

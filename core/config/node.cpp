@@ -10,9 +10,7 @@
 namespace calx {
 namespace {
 
-std::string number_in(const std::string& unit) {
-  return unit == "1" ? std::string("a number") : "a number in " + unit;
-}
+std::string number_in(const std::string& unit) { return unit == "1" ? std::string("a number") : "a number in " + unit; }
 
 // Value and unit of {"value": ..., "unit": "mm"}; unit is empty where a plain value stands.
 struct Quantity {
@@ -25,7 +23,8 @@ Quantity quantity(const Node& node) {
   if (!j.is_object()) return {&j, node.pointer(), ""};
   Object object(node, "a number");
   const Node value = object.need("value", "a quantity is {\"value\": 2.5, \"unit\": \"mm\"}");
-  const std::string unit = object.need("unit", "a quantity is {\"value\": 2.5, \"unit\": \"mm\"}").text("a unit such as mm");
+  const std::string unit =
+      object.need("unit", "a quantity is {\"value\": 2.5, \"unit\": \"mm\"}").text("a unit such as mm");
   object.done();
   return {&value.json(), value.pointer(), unit};
 }
@@ -121,7 +120,8 @@ std::vector<Node> Node::items(const std::string& what) const {
   if (!value_->is_array()) fail(shown(*value_) + "; must be a list of " + what);
   std::vector<Node> out;
   out.reserve(value_->size());
-  for (std::size_t k = 0; k < value_->size(); ++k) out.emplace_back(*document_, (*value_)[k], pointer_ + pointer_token(k));
+  for (std::size_t k = 0; k < value_->size(); ++k)
+    out.emplace_back(*document_, (*value_)[k], pointer_ + pointer_token(k));
   return out;
 }
 
@@ -155,7 +155,8 @@ Node Object::need(const std::string& key, const std::string& what) {
   for (const auto& item : node_.json().items())
     if (std::find(asked_.begin(), asked_.end(), item.key()) == asked_.end()) present.push_back(item.key());
   const std::string near = nearest_name(key, present);
-  if (!near.empty()) node_.document().fail(pointer() + pointer_token(near), "unknown key; did you mean \"" + key + "\"?");
+  if (!near.empty())
+    node_.document().fail(pointer() + pointer_token(near), "unknown key; did you mean \"" + key + "\"?");
   node_.document().fail(pointer() + pointer_token(key), "is missing; " + what);
 }
 
@@ -228,7 +229,8 @@ void check_name(const Node& node, const std::string& name) {
   if (name.empty()) node.fail("the name is empty; must be text without \"/\"");
   for (const char c : name)
     if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 32)
-      node.fail("\"" + name + "\" cannot be a name; must not hold slashes, line ends or tabs, since files are named after it");
+      node.fail("\"" + name +
+                "\" cannot be a name; must not hold slashes, line ends or tabs, since files are named after it");
 }
 
 }  // namespace calx

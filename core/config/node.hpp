@@ -63,9 +63,10 @@ class Object {
   bool boolean(const std::string& key, bool preset);
   std::size_t choice(const std::string& key, const std::string& what, const std::vector<std::string>& names,
                      std::size_t preset);
-  std::string text(const std::string& key, const std::string& what);  // empty when missing
+  std::string text(const std::string& key, const std::string& what);         // empty when missing
   std::vector<Node> items(const std::string& key, const std::string& what);  // none when missing
-  std::vector<std::string> names(const std::string& key, const std::string& kind, const std::vector<std::string>& known);
+  std::vector<std::string> names(const std::string& key, const std::string& kind,
+                                 const std::vector<std::string>& known);
   Parameters parameters(const std::string& key = "parameters");
 
   /// All keys with their nodes, for objects whose keys are names.

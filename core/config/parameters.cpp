@@ -73,8 +73,9 @@ void refuse_unknown(const Node& object, const std::vector<std::string>& known, c
       return std::find(names.begin(), names.end(), item.key()) != names.end();
     };
     if (!in(known) && !in(ignore))
-      object.document().fail(object.pointer() + pointer_token(item.key()),
-                             "unknown key" + (owner.empty() ? "" : " for " + owner) + "; " + did_you_mean(item.key(), known));
+      object.document().fail(
+          object.pointer() + pointer_token(item.key()),
+          "unknown key" + (owner.empty() ? "" : " for " + owner) + "; " + did_you_mean(item.key(), known));
   }
 }
 
@@ -101,7 +102,8 @@ ResolvedParameters resolve_parameters(const Parameters& parameters, const std::v
   const Reading reading{object, owner};
   const auto find = [&](const std::string& key) {
     const auto it = object.json().find(key);
-    return it == object.json().end() ? std::optional<Node>() : Node(document, *it, parameters.pointer + pointer_token(key));
+    return it == object.json().end() ? std::optional<Node>()
+                                     : Node(document, *it, parameters.pointer + pointer_token(key));
   };
   for (const FieldTable& t : tables) {
     std::vector<double> values(t.count);
@@ -114,7 +116,8 @@ ResolvedParameters resolve_parameters(const Parameters& parameters, const std::v
       } else if (degrees) {
         read_entry(reading, e, *degrees, true, &values[e.first]);
       } else if (e.field->flags & CALX_FIELD_REQUIRED) {
-        const std::string unit = e.choices.empty() && std::string(e.field->unit) != "1" ? std::string(" in ") + e.field->unit : "";
+        const std::string unit =
+            e.choices.empty() && std::string(e.field->unit) != "1" ? std::string(" in ") + e.field->unit : "";
         document.fail(parameters.pointer + pointer_token(e.name),
                       "is missing; " + owner + " needs the " + e.field->doc + unit);
       } else {

@@ -11,13 +11,17 @@ namespace schema {
 
 Json text(const std::string& doc) { return {{"type", "string"}, {"minLength", 1}, {"description", doc}}; }
 
-Json boolean(const std::string& doc, bool value) { return {{"type", "boolean"}, {"default", value}, {"description", doc}}; }
+Json boolean(const std::string& doc, bool value) {
+  return {{"type", "boolean"}, {"default", value}, {"description", doc}};
+}
 
 Json whole(const std::string& doc, std::uint64_t lowest) {
   return {{"type", "integer"}, {"minimum", lowest}, {"description", doc}};
 }
 
-Json choice(const std::string& doc, const std::vector<std::string>& names) { return {{"enum", names}, {"description", doc}}; }
+Json choice(const std::string& doc, const std::vector<std::string>& names) {
+  return {{"enum", names}, {"description", doc}};
+}
 
 Json with_unit(const Json& value, const std::string& unit) {
   return {{"type", "object"},
@@ -44,7 +48,9 @@ Json vector(const std::string& doc, const std::string& unit) {
   return {{"anyOf", {each, with_unit(three, unit)}}, {"description", doc + in}};
 }
 
-Json list(const std::string& doc, Json items) { return {{"type", "array"}, {"items", std::move(items)}, {"description", doc}}; }
+Json list(const std::string& doc, Json items) {
+  return {{"type", "array"}, {"items", std::move(items)}, {"description", doc}};
+}
 
 Json map(const std::string& doc, Json values) {
   return {{"type", "object"}, {"additionalProperties", std::move(values)}, {"description", doc}};
@@ -58,7 +64,9 @@ Json object(const std::string& doc, const Properties& properties, const std::vec
   return out;
 }
 
-Json any_of(const std::string& doc, const std::vector<Json>& options) { return {{"anyOf", options}, {"description", doc}}; }
+Json any_of(const std::string& doc, const std::vector<Json>& options) {
+  return {{"anyOf", options}, {"description", doc}};
+}
 
 Json ref(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
 
@@ -94,13 +102,15 @@ void add_entry(Json& properties, const TableEntry& e) {
   const calx_field& f = *e.field;
   if (!e.choices.empty()) {
     const std::size_t index = static_cast<std::size_t>(f.preset);
-    properties[e.name] = preset(choice(f.doc, e.choices), index < e.choices.size() ? e.choices[index] : e.choices.front());
+    properties[e.name] =
+        preset(choice(f.doc, e.choices), index < e.choices.size() ? e.choices[index] : e.choices.front());
     return;
   }
   if (e.rows == 3) {
     properties[e.name] = preset(vector(f.doc, f.unit), preset_of(e, 1));
     const Json three = {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
-    if (e.is_angle) properties[e.name + "_deg"] = preset(plain_degrees(e, three), preset_of(e, from_degrees(1, f.unit)));
+    if (e.is_angle)
+      properties[e.name + "_deg"] = preset(plain_degrees(e, three), preset_of(e, from_degrees(1, f.unit)));
     return;
   }
   Json entry;
@@ -129,8 +139,10 @@ std::string table_schema(const std::vector<FieldTable>& tables, const char* extr
       schema::add_entry(properties, e);
       if (e.is_angle) {
         const Json one = {{"required", Json::array({e.name})}}, other = {{"required", Json::array({e.name + "_deg"})}};
-        if (e.field->flags & CALX_FIELD_REQUIRED) all.push_back({{"oneOf", {one, other}}});
-        else all.push_back({{"not", {{"required", {e.name, e.name + "_deg"}}}}});
+        if (e.field->flags & CALX_FIELD_REQUIRED)
+          all.push_back({{"oneOf", {one, other}}});
+        else
+          all.push_back({{"not", {{"required", {e.name, e.name + "_deg"}}}}});
       } else if (e.field->flags & CALX_FIELD_REQUIRED) {
         required.push_back(e.name);
       }
@@ -140,10 +152,23 @@ std::string table_schema(const std::vector<FieldTable>& tables, const char* extr
     }
   const Json extra = parse_extra_schema(extra_schema, title);
   if (extra.contains("properties"))
-    for (const auto& property : extra["properties"].items()) properties[property.key()] = property.value();
+    for (const std::string& key : extra_keys(extra)) {
+      if (extra["properties"].contains(key)) {
+        properties[key] = extra["properties"][key];
+        continue;
+      }
+      // The "_deg" form of the angle before it; limits in radians do not hold for it.
+      Json degrees = extra["properties"][key.substr(0, key.size() - 4)];
+      for (const char* limit : {"minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum", "default"})
+        degrees.erase(limit);
+      degrees["unit"] = degree_unit(degrees["unit"]);
+      properties[key] = degrees;
+    }
   if (extra.contains("required"))
     for (const Json& key : extra["required"]) required.push_back(key);
-  Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}, {"type", "object"},
+  Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", title},
+              {"type", "object"},
               {"properties", properties}};
   if (!required.empty()) out["required"] = required;
   if (!all.empty()) out["allOf"] = all;

@@ -43,8 +43,8 @@ std::vector<TableEntry> table_entries(const FieldTable& table) {
       for (std::uint32_t c = 0; c < 3; ++c)
         if (k + c >= table.count || table.fields[k + c].name != base + "_" + "xyz"[c] ||
             ((table.fields[k + c].flags >> 8) & 255) != group)
-          throw Error(Fault::plugin, "the parameter table has \"" + e.name + "\" in a vector group; the rows must be " + base +
-                                         "_x, " + base + "_y, " + base + "_z");
+          throw Error(Fault::plugin, "the parameter table has \"" + e.name + "\" in a vector group; the rows must be " +
+                                         base + "_x, " + base + "_y, " + base + "_z");
       e.name = base;
       e.rows = 3;
       k += 2;

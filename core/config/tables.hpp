@@ -9,12 +9,12 @@
 namespace calx {
 
 struct TableEntry {
-  std::string name;               // the key: "stroke"; "base" for base_x, base_y, base_z
-  const calx_field* field;        // the first row
-  std::uint32_t first = 0;        // its index
-  std::uint32_t rows = 1;         // 3 for a vector
+  std::string name;                  // the key: "stroke"; "base" for base_x, base_y, base_z
+  const calx_field* field;           // the first row
+  std::uint32_t first = 0;           // its index
+  std::uint32_t rows = 1;            // 3 for a vector
   std::vector<std::string> choices;  // names of a choice, else empty
-  bool is_angle = false;          // may also be given as name_deg
+  bool is_angle = false;             // may also be given as name_deg
 };
 
 std::vector<TableEntry> table_entries(const FieldTable& table);

@@ -20,9 +20,7 @@ TEST_CASE("a name that resembles nothing gets no guess") {
   CHECK(nearest_name("x", {}) == "");
 }
 
-TEST_CASE("of two equally near names the first is offered") {
-  CHECK(nearest_name("k3", {"k1", "k2"}) == "k1");
-}
+TEST_CASE("of two equally near names the first is offered") { CHECK(nearest_name("k3", {"k1", "k2"}) == "k1"); }
 
 TEST_CASE("the hint lists what is known when nothing is near") {
   CHECK(did_you_mean("yuong", {"density", "young"}) == "did you mean \"young\"?");

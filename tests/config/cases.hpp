@@ -62,7 +62,7 @@ inline const char* full_case() {
       {"cycle": {"motion": "rotor turn", "number": 40}},
       {"after": {"event": "valve open", "delay": {"value": 1, "unit": "min"}}}]}}
   },
-  "stages": [{"name": "fill", "until": "full", "add": ["canister"], "remove": ["rotor"], "start": ["lift"]}, {"name": "rest"}],
+  "stages": [{"name": "fill", "until": "full", "add": ["canister"], "remove": ["rotor"], "start": ["lift"]}, {"name": "rest", "until": {"all": [{"mass": {"at_most": 1}}, {"count": {"at_least": 5}}]}}],
   "forces": [{"plugin": "calx.drag", "parameters": {"viscosity": 1.8e-5}}],
   "sensors": [
     {"name": "canister mass", "kind": "mass", "region": "canister", "every": 0.01},

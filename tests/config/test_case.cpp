@@ -103,7 +103,7 @@ TEST_CASE("parts, motions, stages, sensors and events refer to each other by nam
   CHECK(c.motions.at(1).carried_by == "lift");
   CHECK(c.stages.at(0).until == "full");
   CHECK(c.stages.at(0).start.at(0) == "lift");
-  CHECK(c.stages.at(1).until == "");
+  CHECK(c.stages.at(1).until == "stage rest");
 
   REQUIRE(c.sensors.size() == 3);
   CHECK(c.sensors[0].kind == "mass");
@@ -118,7 +118,7 @@ TEST_CASE("parts, motions, stages, sensors and events refer to each other by nam
   CHECK(c.regions[5].name == "sensor inline");
 
   using Kind = ConditionSettings::Kind;
-  REQUIRE(c.events.size() == 4);
+  REQUIRE(c.events.size() == 5);
   CHECK(c.events[0].name == "valve open");
   CHECK(c.events[0].when.kind == Kind::settled);
   CHECK(c.events[0].when.hold == 0.1);
@@ -144,8 +144,9 @@ TEST_CASE("the least case gets the defaults, and they stand in the resolved text
   CHECK(c.settings.gravity.z == -9.81);
   CHECK(c.settings.seed == 1);
   CHECK(c.settings.output.checkpoint_every_wall == 60);
-  for (const char* text : {"\"rayleigh_fraction\": 0.1", "\"integrator\": \"euler\"", "\"on_leave\": \"error\"", "\"seed\": 1",
-                           "\"checkpoint_every_wall\": 60.0", "\"skin\": 0.0", "\"overlap_limit\": 0.5", "\"title\": \"least\""})
+  for (const char* text :
+       {"\"rayleigh_fraction\": 0.1", "\"integrator\": \"euler\"", "\"on_leave\": \"error\"", "\"seed\": 1",
+        "\"checkpoint_every_wall\": 60.0", "\"skin\": 0.0", "\"overlap_limit\": 0.5", "\"title\": \"least\""})
     CHECK_MESSAGE(c.resolved.find(text) != std::string::npos, text);
 }
 
@@ -164,7 +165,8 @@ TEST_CASE("a shorthand, an event in any list and a whole number written as 1e3 a
     "materials": {"glass": {"density": 2500}}, "shapes": {"ball": {"sphere": {"radius": {"value": 1, "unit": "mm"}}}},
     "events": {"a": {"when": {"time": 1}}, "b": {"when": "a"}, "c": {"when": {"all": ["a", "b"]}}},
     "sources": [{"shape": "ball", "material": "glass", "count": 1e3, "region": {"sphere": {"centre": [0, 0, 0], "radius": 1}}}]})",
-                                    "case.json").settings;
+                                    "case.json")
+                             .settings;
   CHECK(c.sources.at(0).count == 1000);
   CHECK(c.sources.at(0).name == "source 0");
   CHECK(c.events.at(1).when.event == "a");
