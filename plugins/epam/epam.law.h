@@ -159,7 +159,7 @@ CALX_FN void CALX_ID(epam_force)(const CALX_ID(calx_contact) * c, const CALX_ID(
   const real dp = p->lambda_root * d;
   const real sum = c->r_i + c->r_j;
   const real centres = calx_max(sum - dp, tiny);
-  const real pair_a2 = dp * (R(2.0) * c->r_i - dp) * (R(2.0) * c->r_j - dp) * (sum + sum - dp) /
+  const real pair_a2 = dp * ((R(2.0) * c->r_i - dp) * (R(2.0) * c->r_j - dp)) * (sum + sum - dp) /
                        (R(4.0) * calx_max(centres * centres, tiny));
   const real wall_a2 = dp * (R(2.0) * c->r_i - dp);
   const real patch = calx_sqrt(calx_max(c->r_j > R(0.0) ? pair_a2 : wall_a2, R(0.0)));

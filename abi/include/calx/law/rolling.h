@@ -52,8 +52,8 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real r2 = c->r_eff * c->r_eff;
   const real kr = (of_kn * kn + of_kt * kt + k_given) * r2;
   const real kr_before = (of_kn * kn_before + of_kt * kt_before + k_given) * r2;
-  /* m* r_i r_j is exact for equal spheres and for a wall, where r_j counts as r_i. */
-  const real mr2 = c->m_eff * c->r_i * (c->r_j > R(0.0) ? c->r_j : c->r_i);
+  /* m* r_i r_j is exact for equal spheres and for a wall, where r_j counts as r_i. Radii first: same bits either way. */
+  const real mr2 = c->m_eff * (c->r_i * (c->r_j > R(0.0) ? c->r_j : c->r_i));
   const real cr = c_given * r2 + R(2.0) * eta * calx_sqrt(R(1.4) * mr2 * kr);
   /* Type a below its cap: 2/5 m r^2 / dt would stop the spin in one step; an eighth, so that eight contacts may act. */
   const real brake = type_a * R(0.05) * mr2 / c->dt;
