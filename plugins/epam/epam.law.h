@@ -21,7 +21,6 @@
   X(chi_1, "1", 0, 1, 0, 0, "binary digit of chi: 1")                                                                 \
   X(chi_2, "1", 0, 1, 0, 0, "binary digit of chi: 2")                                                                 \
   X(chi_4, "1", 0, 1, 0, 0, "binary digit of chi: 4")                                                                 \
-  X(chi, "1", 1, 5, 1.5, 0, "adhesive exponent")                                                                      \
   X(dash, "1", 0, 10, 0.3, 0, "normal dashpot over sqrt(k m*), k the stiffness that damping names")                   \
   X(dash_t, "1", 0, 10, 0.3, 0, "tangential dashpot over sqrt(kt m*)")                                                \
   X(tsuji, "1", 0, 1, 1, 0, "1: the dashpot follows the tangent stiffness of the virgin line; 0: k1 as a number")     \

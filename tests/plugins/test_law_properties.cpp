@@ -23,7 +23,7 @@ std::vector<Setup> all_setups() {
   for (const char* rolling : {"none", "a", "epsd", "epsd2", "sds"}) {
     all.push_back({"calx-hertz-mindlin", {{"rolling", rolling}}, hm_roll});
     Values linear = hm_roll;
-    linear["kn"] = 5e3;
+    linear["kn"] = 1e3;
     all.push_back({"calx-linear", {{"rolling", rolling}}, linear});
   }
   all.push_back({"calx-hertz-mindlin", {{"tension", "clipped"}, {"tangential", "rescaled"}}, hm});
@@ -186,7 +186,7 @@ TEST_CASE("turned inputs give turned outputs") {
           worst = std::fmax(worst, norm(turn(v) - w) / std::fmax(norm(v), c == CALX_OUT_FX ? 1e-6 : 1e-9));
         }
     }
-    CHECK(worst < 1e-11);
+    CHECK(worst < 1e-12);
   }
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("energy outputs sum to the work done in oblique impacts") {
       s.v = {0.5 * std::sin(angle), 0, -0.5 * std::cos(angle)};
       Duel d(law, s, sphere(1.25e-3, 2000, {}, {}));
       const double before = d.kinetic();
-      // 40 steps a contact, as the rule for the time step gives.
+      // 30 to 40 steps a contact, as the rule for the time step gives.
       const double dt = 1e-5;
       bool touched = false;
       for (int k = 0; k < 3000; ++k) {
