@@ -191,7 +191,6 @@ class Epam : public calx::Instance {
     row.chi_1 = chi2_ & 2 ? 1 : 0;
     row.chi_2 = chi2_ & 4 ? 1 : 0;
     row.chi_4 = chi2_ & 8 ? 1 : 0;
-    row.chi = 0.5 * chi2_;
     // c = 2 sqrt(5/6) zeta sqrt(S m*) with S = 3/2 k1 sqrt(delta), that is sqrt(5) zeta sqrt(k1 sqrt(delta) m*);
     // c = 2 zeta sqrt(k1 m*) for exponent 1 and, as a number, for literal_k1.
     const double log_e = std::log(value[RESTITUTION]);

@@ -21,7 +21,6 @@
   X(chi_1, "1", 0, 1, 0, 0, "binary digit of chi: 1")                                                                 \
   X(chi_2, "1", 0, 1, 0, 0, "binary digit of chi: 2")                                                                 \
   X(chi_4, "1", 0, 1, 0, 0, "binary digit of chi: 4")                                                                 \
-  X(chi, "1", 1, 5, 1.5, 0, "adhesive exponent")                                                                      \
   X(dash, "1", 0, 10, 0.3, 0, "normal dashpot over sqrt(k m*), k the stiffness that damping names")                   \
   X(dash_t, "1", 0, 10, 0.3, 0, "tangential dashpot over sqrt(kt m*)")                                                \
   X(tsuji, "1", 0, 1, 1, 0, "1: the dashpot follows the tangent stiffness of the virgin line; 0: k1 as a number")     \
@@ -159,7 +158,7 @@ CALX_FN void CALX_ID(epam_force)(const CALX_ID(calx_contact) * c, const CALX_ID(
   const real dp = p->lambda_root * d;
   const real sum = c->r_i + c->r_j;
   const real centres = calx_max(sum - dp, tiny);
-  const real pair_a2 = dp * (R(2.0) * c->r_i - dp) * (R(2.0) * c->r_j - dp) * (sum + sum - dp) /
+  const real pair_a2 = dp * ((R(2.0) * c->r_i - dp) * (R(2.0) * c->r_j - dp)) * (sum + sum - dp) /
                        (R(4.0) * calx_max(centres * centres, tiny));
   const real wall_a2 = dp * (R(2.0) * c->r_i - dp);
   const real patch = calx_sqrt(calx_max(c->r_j > R(0.0) ? pair_a2 : wall_a2, R(0.0)));

@@ -149,7 +149,7 @@ TEST_CASE("Chung and Ooi test 6: a spinning sphere dropped on a plane") {
     REQUIRE(d.collide(2e-7, 1));
     const double beta = -(d.i.w.y * 0.1 - d.i.v.x) / vt;
     // The dashpot pulls at the end, so the pushing impulse is a little more than (1 + e) m Vn.
-    CHECK(std::fabs(beta - (s - 1)) < 0.02);
+    CHECK(std::fabs(beta - (s - 1)) < 0.03);
     CHECK(std::fabs(beta - number(row, "beta")) < 0.03);
     Duel c(clipped, b, wall());
     REQUIRE(c.collide(2e-7, 1));
@@ -214,11 +214,26 @@ TEST_CASE("stored answers of the open-source comparison: normal impact on steel 
   CHECK_NEAR(d.i.x.x, 5.002e-5, 1e-3);
 }
 
-TEST_CASE("four-sphere law check of LIGGGHTS and LAMMPS") {
-  // Oblique pair of the deck: relative speeds as measured there are set by the same law; here the floor bounce, whose
-  // rebound 0.13316 m/s includes gravity, and restitution 0.3 of 0.5 m/s.
-  const Law law(kLib, {}, {{"restitution", 0.3}, {"friction", 0.5}}, {1e7, 0.25}, {1e7, 0.25});
-  CHECK_NEAR(restitution(law, sphere(1.25e-3, 2100, {}, {}), wall(), 0.5, 1e-7, 1), 0.3, 1e-3);
+TEST_CASE("LIGGGHTS and LAMMPS: floor bounce, oblique floor and oblique pair with spin") {
+  // Answers of LIGGGHTS 3.8.0 (Debian) after 2000 steps of 9.8e-7 s. It takes friction from |F_n| while the dashpot pulls,
+  // this law takes none there; Yade, which clips the pull, gives 0.2110, 175.2 and -77.40 for the last figures of each.
+  const Law law(kLib, {}, {{"restitution", 0.3}, {"friction", 0.5}});
+  const double r = 1.25e-3, rho = 2100;
+  const auto run = [&](const Body& i, const Body& j, double g) {
+    Duel d(law, i, j);
+    d.gravity = {0, 0, -g};
+    for (int k = 0; k < 2000; ++k) d.step(9.8e-7);
+    return d;
+  };
+  CHECK_NEAR(run(sphere(r, rho, {0, 0, 0.001251}, {0, 0, -0.5}), wall(), 9.81).i.v.z, 0.13316, 2e-3);
+  const Body slid = run(sphere(r, rho, {0, 0, 0.001251}, {0.3, 0, -0.5}), wall(), 9.81).i;
+  CHECK_NEAR(slid.v.x, 0.2139, 0.02);
+  CHECK_NEAR(slid.w.y, 171.2, 0.04);
+  const Body hit = run(sphere(r, rho, {0.025, 0, 0}, {0.5, 0.2, 0}),
+                       sphere(r, rho, {0.0275025, 0, 0}, {-0.5, 0, 0}, {0, 0, 50}), 0).i;
+  CHECK_NEAR(hit.v.x, -0.14885, 2e-3);
+  CHECK_NEAR(hit.v.y, 0.16471, 0.01);
+  CHECK_NEAR(hit.w.z, -75.16, 0.03);
 }
 
 TEST_CASE("slide to roll, incline and gross sliding") {

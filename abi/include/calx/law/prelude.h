@@ -5,7 +5,10 @@
  * A law text holds three lists (SYMBOL_pair_LIST, SYMBOL_prop_LIST, SYMBOL_state_LIST), a needs mask (SYMBOL_NEEDS) and
  * one body, CALX_LAW_EVAL(SYMBOL). It may use real, R(0.5) for literals, calx_sqrt calx_abs calx_min calx_max,
  * arithmetic, comparison and ?: with both sides safe to compute. No loop, if, index, cast, or name with two
- * underscores; every name it defines begins with its symbol. */
+ * underscores; every name it defines begins with its file's stem. A text may hold several laws that share functions.
+ *
+ * sliding.h and rolling.h, in the same dialect, follow this header in that order: friction and rolling resistance that
+ * several laws share. A host that compiles law texts puts the three before any law. */
 #undef real
 #undef R
 #undef CALX_ID

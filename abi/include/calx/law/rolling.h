@@ -52,8 +52,8 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real r2 = c->r_eff * c->r_eff;
   const real kr = (of_kn * kn + of_kt * kt + k_given) * r2;
   const real kr_before = (of_kn * kn_before + of_kt * kt_before + k_given) * r2;
-  /* m* r_i r_j is exact for equal spheres and for a wall, where r_j counts as r_i. */
-  const real mr2 = c->m_eff * c->r_i * (c->r_j > R(0.0) ? c->r_j : c->r_i);
+  /* m* r_i r_j is exact for equal spheres and for a wall, where r_j counts as r_i. Radii first: same bits either way. */
+  const real mr2 = c->m_eff * (c->r_i * (c->r_j > R(0.0) ? c->r_j : c->r_i));
   const real cr = c_given * r2 + R(2.0) * eta * calx_sqrt(R(1.4) * mr2 * kr);
   /* Type a below its cap: 2/5 m r^2 / dt would stop the spin in one step; an eighth, so that eight contacts may act. */
   const real brake = type_a * R(0.05) * mr2 / c->dt;
@@ -77,31 +77,33 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real tx = ox + stretch * wx;
   const real ty = oy + stretch * wy;
   const real tz = oz + stretch * wz;
+  /* As in calx_slide: beyond the cap the spring, or type a's brake, is shortened and the dashpot is off. */
   const real ax = kr * tx + brake * wx;
   const real ay = kr * ty + brake * wy;
   const real az = kr * tz + brake * wz;
   const real trial2 = ax * ax + ay * ay + az * az;
-  const real slip = trial2 > cap2 ? cap / calx_sqrt(calx_max(trial2, tiny)) : R(1.0);
+  const real dash = trial2 > cap2 ? R(0.0) : cr;
+  const real hx = ax + dash * wx;
+  const real hy = ay + dash * wy;
+  const real hz = az + dash * wz;
+  const real sum2 = hx * hx + hy * hy + hz * hz;
+  const real cut = sum2 > cap2 ? cap / calx_sqrt(calx_max(sum2, tiny)) : R(1.0);
+  const real slip = trial2 > cap2 ? cut : R(1.0);
   s->x = slip * tx;
   s->y = slip * ty;
   s->z = slip * tz;
+  s->mx = -cut * hx;
+  s->my = -cut * hy;
+  s->mz = -cut * hz;
 
   const real gx = slip * ax;
   const real gy = slip * ay;
   const real gz = slip * az;
-  const real hx = gx + cr * wx;
-  const real hy = gy + cr * wy;
-  const real hz = gz + cr * wz;
-  const real dash = calx_max(trial2, hx * hx + hy * hy + hz * hz) > cap2 ? R(0.0) : cr;
-  s->mx = -(gx + dash * wx);
-  s->my = -(gy + dash * wy);
-  s->mz = -(gz + dash * wz);
-
   /* The brake of type a has no force of the step before: its whole torque counts, a spring's by the trapezoid. */
   const real k_old = calx_max(kr, kr_before);
   const real share = R(0.5) * (R(1.0) + type_a);
   const real work = c->dt * (R(0.5) * k_old * (ox * wx + oy * wy + oz * wz) + share * (gx * wx + gy * wy + gz * wz));
   s->elastic = R(0.5) * kr * (s->x * s->x + s->y * s->y + s->z * s->z);
   s->friction = work - (s->elastic - R(0.5) * kr_before * length2);
-  s->damping = dash * c->dt * (wx * wx + wy * wy + wz * wz);
+  s->damping = -c->dt * ((s->mx + gx) * wx + (s->my + gy) * wy + (s->mz + gz) * wz);
 }

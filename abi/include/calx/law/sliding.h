@@ -12,11 +12,13 @@ typedef struct CALX_ID(calx_spring) {
   real elastic, friction, damping; /* J, out: stored now; lost in this step to sliding; lost to the dashpot */
 } CALX_ID(calx_spring);
 
-/* vn         m/s, normal component of the velocity
+/* Reads normal, velocity, m_eff and dt of the contact.
+ *
+ * vn         m/s, normal component of the velocity
  * kt         N/m, stiffness now; kt_before: one step earlier (read by the energy outputs only)
  * num, den   their ratio is (kt_before / kt)^2 or, where that exceeds 1, 1. Given apart, so that one division serves
  *            this and the turn of the spring; den = 0 empties the spring
- * ct         kg/s, dashpot; it acts only while spring and dashpot together stay below the limit
+ * ct         kg/s, dashpot; off while the spring slides, cut where spring and dashpot together exceed the limit
  * limit      N, Coulomb limit, not negative */
 CALX_FN void CALX_ID(calx_slide)(const CALX_ID(calx_contact) * c, const real vn, const real kt, const real kt_before,
                                  const real num, const real den, const real ct, const real limit,
@@ -40,29 +42,36 @@ CALX_FN void CALX_ID(calx_slide)(const CALX_ID(calx_contact) * c, const real vn,
   const real tx = ox + vx * c->dt;
   const real ty = oy + vy * c->dt;
   const real tz = oz + vz * c->dt;
+  /* Beyond the limit on its own, the spring is shortened to it and the dashpot is off. Where only spring and dashpot
+   * together are beyond, the sum is cut and the spring stays. One root and one division serve both. */
   const real trial2 = kt * kt * (tx * tx + ty * ty + tz * tz);
   const real limit2 = limit * limit;
-  const real slip = trial2 > limit2 ? limit / calx_sqrt(calx_max(trial2, tiny)) : R(1.0);
+  const real dash = trial2 > limit2 ? R(0.0) : ct;
+  const real hx = kt * tx + dash * vx;
+  const real hy = kt * ty + dash * vy;
+  const real hz = kt * tz + dash * vz;
+  const real sum2 = hx * hx + hy * hy + hz * hz;
+  const real cut = sum2 > limit2 ? limit / calx_sqrt(calx_max(sum2, tiny)) : R(1.0);
+  const real slip = trial2 > limit2 ? cut : R(1.0);
   s->x = slip * tx;
   s->y = slip * ty;
   s->z = slip * tz;
+  s->fx = -cut * hx;
+  s->fy = -cut * hy;
+  s->fz = -cut * hz;
 
   const real gx = kt * s->x;
   const real gy = kt * s->y;
   const real gz = kt * s->z;
-  const real hx = gx + ct * vx;
-  const real hy = gy + ct * vy;
-  const real hz = gz + ct * vz;
-  const real dash = calx_max(trial2, hx * hx + hy * hy + hz * hz) > limit2 ? R(0.0) : ct;
-  s->fx = -(gx + dash * vx);
-  s->fy = -(gy + dash * vy);
-  s->fz = -(gz + dash * vz);
-
   /* Work by the trapezoid of old and new force, less what is stored more than before. The force before is that of the
    * stiffer of the two springs on the carried displacement. */
   const real k_old = calx_max(kt, kt_before);
   const real work = R(0.5) * c->dt * ((k_old * ox + gx) * vx + (k_old * oy + gy) * vy + (k_old * oz + gz) * vz);
   s->elastic = R(0.5) * kt * (s->x * s->x + s->y * s->y + s->z * s->z);
   s->friction = work - (s->elastic - R(0.5) * kt_before * length2);
-  s->damping = dash * c->dt * (vx * vx + vy * vy + vz * vz);
+  /* The dashpot works on the mean velocity of the step. The force of this contact changes that by 7/2 F dt / m* (solid
+   * spheres: 1/m* + r^2/I), half of it on the mean. */
+  const real half = R(1.75) * c->dt / c->m_eff;
+  s->damping = -c->dt * ((s->fx + gx) * (vx + half * s->fx) + (s->fy + gy) * (vy + half * s->fy) +
+                         (s->fz + gz) * (vz + half * s->fz));
 }
