@@ -1,4 +1,4 @@
-# Installs the plugin boundary alone: cmake --install <build> --component abi. Headers, find_package(CalxAbi), calx-abi.pc.
+# Installs headers, find_package(CalxAbi) and calx-abi.pc; alone with cmake --install <build> --component abi.
 include(CMakePackageConfigHelpers)
 set(abi ${CMAKE_CURRENT_LIST_DIR}/..)
 file(STRINGS ${abi}/include/calx/abi.h lines REGEX "^#define CALX_ABI_(MAJOR|MINOR) ")

@@ -9,9 +9,9 @@ namespace calx {
 enum class LogLevel { debug, info, warning, error };
 
 struct LogSettings {
-  std::string file;                         // path of the run log; empty: none
-  bool append = false;                      // keep what the file holds, as a resumed run does
-  LogLevel file_level = LogLevel::info;     // lines below it are dropped
+  std::string file;                      // path of the run log; empty: none
+  bool append = false;                   // keep what the file holds, as a resumed run does
+  LogLevel file_level = LogLevel::info;  // lines below it are dropped
   bool to_stderr = false;
   LogLevel stderr_level = LogLevel::info;
   bool json_lines = false;  // stderr: one JSON object a line, {"time": ISO 8601 in UTC, "level": ..., "message": ...}

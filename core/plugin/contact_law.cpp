@@ -48,7 +48,8 @@ double ContactLaw::stable_dt(const std::vector<double>& pair, double m_eff, doub
   if (!table_->stable_dt) return std::numeric_limits<double>::infinity();
   const double dt = table_->stable_dt(pair.data(), m_eff, r_eff, overlap);
   if (dt > 0) return dt;
-  throw Error(Fault::plugin, instance_->label() + ": its stable step is " + std::to_string(dt) + " s; above 0 is needed");
+  throw Error(Fault::plugin,
+              instance_->label() + ": its stable step is " + std::to_string(dt) + " s; above 0 is needed");
 }
 
 double ContactLaw::reach(const std::vector<double>& pair, double r_i, double r_j) const {
@@ -77,9 +78,10 @@ void check_material_units(const std::vector<const ContactLaw*>& laws) {
         for (std::uint32_t m = 0; m < laws[b]->material().count; ++m) {
           const calx_field &mine = laws[a]->material().fields[k], &other = laws[b]->material().fields[m];
           if (std::strcmp(mine.name, other.name) != 0 || std::strcmp(mine.unit, other.unit) == 0) continue;
-          throw Error(Fault::plugin, "material property \"" + std::string(mine.name) + "\": " + laws[b]->instance().label() +
-                                         " reads it in " + other.unit + ", " + laws[a]->instance().label() + " in " +
-                                         mine.unit + "; the two cannot be used in one case");
+          throw Error(Fault::plugin, "material property \"" + std::string(mine.name) +
+                                         "\": " + laws[b]->instance().label() + " reads it in " + other.unit + ", " +
+                                         laws[a]->instance().label() + " in " + mine.unit +
+                                         "; the two cannot be used in one case");
         }
 }
 

@@ -71,8 +71,9 @@ struct ContactLawEntry {
   std::vector<std::string> presets_used;  // options and given fields the user left out
 };
 
-/// Creates the law and reads its parameters: one JSON object holds the law's options and its pair values; a key in neither
-/// is an error. Throws Error(Fault::plugin) or Error(Fault::settings). file: the case, for messages and paths. [main]
+/// Creates the law and reads its parameters: one JSON object holds the law's options and its pair values; a key in
+/// neither is an error. Throws Error(Fault::plugin) or Error(Fault::settings). file: the case, for messages and paths.
+/// [main]
 ContactLawEntry create_contact_law(PluginRegistry& registry, const LawSettings& settings, const std::string& file);
 
 /// Laws that ask for the same material property must agree on its unit. Throws Error(Fault::plugin) with both names.

@@ -81,8 +81,8 @@ std::string field_section(const std::string& title, const FieldTable& fields) {
 }
 
 std::string needs_text(const ContactLaw& law) {
-  static const char* const names[CALX_IN_COUNT] = {"overlap", "nx", "ny", "nz", "vx", "vy", "vz", "wx",
-                                                   "wy", "wz", "r_eff", "m_eff", "r_i", "r_j", "fn_before"};
+  static const char* const names[CALX_IN_COUNT] = {"overlap", "nx", "ny",    "nz",    "vx",  "vy",  "vz",       "wx",
+                                                   "wy",      "wz", "r_eff", "m_eff", "r_i", "r_j", "fn_before"};
   std::string out;
   for (std::uint32_t k = 0; k < CALX_IN_COUNT; ++k)
     if (law.reads(k)) out += std::string(" ") + names[k];

@@ -44,7 +44,8 @@ std::vector<std::string> plugin_search_path(const std::vector<std::string>& give
   for (const std::string& folder : given) {
     std::error_code bad;
     if (folder.empty() || !fs::is_directory(folder, bad))
-      throw Error(Fault::files, "plugin folder \"" + folder + "\" does not exist; give a folder that holds *.plugin.json");
+      throw Error(Fault::files,
+                  "plugin folder \"" + folder + "\" does not exist; give a folder that holds *.plugin.json");
     folders.add(folder);
   }
 
@@ -55,8 +56,9 @@ std::vector<std::string> plugin_search_path(const std::vector<std::string>& give
     from = to + 1;
     if (folder.empty()) continue;  // a shell would read it as the working directory
     if (!fs::path(folder).is_absolute())
-      throw Error(Fault::files, "CALX_PLUGIN_PATH: \"" + folder +
-                                    "\" is not an absolute path; plugins are never looked for relative to the working directory");
+      throw Error(Fault::files,
+                  "CALX_PLUGIN_PATH: \"" + folder +
+                      "\" is not an absolute path; plugins are never looked for relative to the working directory");
     folders.add(folder);
   }
 
@@ -94,8 +96,8 @@ std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& pat
         if (one.refused.empty()) {
           const auto added = first.emplace(one.id, one.path);
           if (!added.second)
-            one.refused = "id " + one.id + " is provided by " + added.first->second + " already, so " + one.path +
-                          " is not used";
+            one.refused =
+                "id " + one.id + " is provided by " + added.first->second + " already, so " + one.path + " is not used";
         }
         found.push_back(std::move(one));
       }

@@ -35,9 +35,7 @@ class FloatMode {
     asm volatile("msr fpcr, %0" : : "r"(fpcr));
 #endif
   }
-  bool operator==(const FloatMode& other) const {
-    return rounding_ == other.rounding_ && control_ == other.control_;
-  }
+  bool operator==(const FloatMode& other) const { return rounding_ == other.rounding_ && control_ == other.control_; }
   bool operator!=(const FloatMode& other) const { return !(*this == other); }
   /// "MXCSR 0x1f80" on x86-64, "FPCR 0x0" on AArch64.
   std::string text() const {

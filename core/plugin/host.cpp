@@ -17,16 +17,26 @@ const std::vector<std::string>& host_extensions() {
 
 std::string status_name(calx_status status) {
   switch (status) {
-    case CALX_OK: return "CALX_OK";
-    case CALX_E_UNSUPPORTED: return "CALX_E_UNSUPPORTED";
-    case CALX_E_ARGUMENT: return "CALX_E_ARGUMENT";
-    case CALX_E_CONFIG: return "CALX_E_CONFIG";
-    case CALX_E_MEMORY: return "CALX_E_MEMORY";
-    case CALX_E_IO: return "CALX_E_IO";
-    case CALX_E_STATE: return "CALX_E_STATE";
-    case CALX_E_VERSION: return "CALX_E_VERSION";
-    case CALX_E_INTERNAL: return "CALX_E_INTERNAL";
-    default: return "status " + std::to_string(status);
+    case CALX_OK:
+      return "CALX_OK";
+    case CALX_E_UNSUPPORTED:
+      return "CALX_E_UNSUPPORTED";
+    case CALX_E_ARGUMENT:
+      return "CALX_E_ARGUMENT";
+    case CALX_E_CONFIG:
+      return "CALX_E_CONFIG";
+    case CALX_E_MEMORY:
+      return "CALX_E_MEMORY";
+    case CALX_E_IO:
+      return "CALX_E_IO";
+    case CALX_E_STATE:
+      return "CALX_E_STATE";
+    case CALX_E_VERSION:
+      return "CALX_E_VERSION";
+    case CALX_E_INTERNAL:
+      return "CALX_E_INTERNAL";
+    default:
+      return "status " + std::to_string(status);
   }
 }
 

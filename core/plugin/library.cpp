@@ -42,15 +42,14 @@ PluginLibrary::PluginLibrary(const PluginManifest& manifest, const std::string& 
   sha256_ = file.sha256();
   if (!manifest.sha256.empty() && manifest.sha256 != sha256_)
     throw Refused{path_ + " has SHA-256 " + sha256_ + ", but its manifest says " + manifest.sha256};
-  if (!pin.empty() && pin != sha256_)
-    throw Refused{path_ + " has SHA-256 " + sha256_ + ", but the case pins " + pin};
+  if (!pin.empty() && pin != sha256_) throw Refused{path_ + " has SHA-256 " + sha256_ + ", but the case pins " + pin};
   entry_ = &file.load();
   check_entry();
 
   const std::string folder = std::filesystem::path(path_).parent_path().string();
-  const calx_status status =
-      guarded(path_, "init", [&] { return entry_->init(host_.table(), folder.c_str()); });
-  if (status < 0) throw Refused{path_ + ": init failed with " + status_name(status) + ": " + host_.take_message(status)};
+  const calx_status status = guarded(path_, "init", [&] { return entry_->init(host_.table(), folder.c_str()); });
+  if (status < 0)
+    throw Refused{path_ + ": init failed with " + status_name(status) + ": " + host_.take_message(status)};
   try {
     read_factory();
   } catch (...) {
@@ -63,8 +62,8 @@ PluginLibrary::~PluginLibrary() { entry_->deinit(); }
 
 void PluginLibrary::check_entry() const {
   if (entry_->magic != CALX_ABI_MAGIC)
-    throw Refused{path_ + ": calx_plugin_entry begins with " + hex(entry_->magic) + " instead of " + hex(CALX_ABI_MAGIC) +
-                  "; it is no Calx plugin, or built for another byte order"};
+    throw Refused{path_ + ": calx_plugin_entry begins with " + hex(entry_->magic) + " instead of " +
+                  hex(CALX_ABI_MAGIC) + "; it is no Calx plugin, or built for another byte order"};
   if (entry_->abi_major != CALX_ABI_MAJOR)
     throw Refused{path_ + " was built for ABI " + std::to_string(entry_->abi_major) + "." +
                   std::to_string(entry_->abi_minor) + ", this host speaks ABI " + std::to_string(CALX_ABI_MAJOR) + "." +
@@ -74,7 +73,10 @@ void PluginLibrary::check_entry() const {
   if (entry_->struct_size < needed)
     throw Refused{path_ + ": calx_plugin_entry has " + std::to_string(entry_->struct_size) + " bytes, ABI 1.0 needs " +
                   std::to_string(needed) + ": rebuild it"};
-  const char* missing = !entry_->init ? "init" : !entry_->deinit ? "deinit" : !entry_->get_factory ? "get_factory" : nullptr;
+  const char* missing = !entry_->init          ? "init"
+                        : !entry_->deinit      ? "deinit"
+                        : !entry_->get_factory ? "get_factory"
+                                               : nullptr;
   if (missing) throw Refused{path_ + ": calx_plugin_entry lacks " + missing};
 }
 
@@ -120,8 +122,8 @@ const calx_descriptor& PluginLibrary::descriptor(const PluginManifest& manifest)
   for (const char* const* id = d.required; id && *id; ++id) {
     const auto& offered = host_extensions();
     if (std::find(offered.begin(), offered.end(), *id) == offered.end())
-      throw Refused{path_ + ": " + manifest.id + " needs the host extension " + *id + ", which this host lacks; it has " +
-                    quoted_list(offered)};
+      throw Refused{path_ + ": " + manifest.id + " needs the host extension " + *id +
+                    ", which this host lacks; it has " + quoted_list(offered)};
   }
   return d;
 }

@@ -23,7 +23,8 @@ class PluginLibrary {
   const std::string& sha256() const { return sha256_; }
   const calx_factory& factory() const { return *factory_; }
   Host& host() { return host_; }
-  /// The descriptor the manifest promises. Throws Refused: not there, another kind or version, needs what the host lacks.
+  /// The descriptor the manifest promises. Throws Refused: not there, another kind or version, needs what the host
+  /// lacks.
   const calx_descriptor& descriptor(const PluginManifest& manifest) const;
   /// Null out with a negative status: see host().take_message(). Throws Refused when the plugin changed the
   /// floating-point mode or reported success without an instance.

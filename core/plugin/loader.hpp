@@ -18,8 +18,8 @@ class LibraryFile {
   LibraryFile& operator=(const LibraryFile&) = delete;
 
   const std::string& sha256() const { return sha256_; }
-  /// Loads it with immediate, local binding and returns its exported entry, which stays valid to the end of the process:
-  /// nothing is unloaded. Throws Refused: cannot be loaded, no such symbol, changed the floating-point mode.
+  /// Loads it with immediate, local binding and returns its exported entry, which stays valid to the end of the
+  /// process: nothing is unloaded. Throws Refused: cannot be loaded, no such symbol, changed the floating-point mode.
   const calx_entry& load();
 
  private:

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",     "version", "vendor",
+const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",      "version", "vendor",
                                                 "license",     "plugins", "requires", "sha256"};
 const std::vector<std::string> plugin_keys = {"id", "kind", "summary"};
 
@@ -28,7 +28,8 @@ std::string platform() {
   utsname system{};
   if (uname(&system) != 0) return "unknown";
   std::string name = system.sysname;
-  std::transform(name.begin(), name.end(), name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
   return name + "-" + system.machine;
 }
 
@@ -56,7 +57,8 @@ void check_keys(const json& object, const std::vector<std::string>& known, const
   for (const auto& item : object.items()) {
     if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
     const std::string near = nearest_name(item.key(), known);
-    throw Refused{where + "/" + item.key() + ": unknown key" + (near.empty() ? "" : "; did you mean \"" + near + "\"?")};
+    throw Refused{where + "/" + item.key() + ": unknown key" +
+                  (near.empty() ? "" : "; did you mean \"" + near + "\"?")};
   }
 }
 
@@ -117,8 +119,7 @@ std::string library_path(const json& root, const fs::path& folder) {
   const bool inside = !bad && meet.first == folder.end();
   if (!inside || !wanted.has_filename()) throw Refused{"/library: \"" + name + "\" lies outside the manifest's folder"};
   const fs::path library = parent / wanted.filename();
-  if (!fs::exists(fs::symlink_status(library, bad)))
-    throw Refused{"/library: " + library.string() + " does not exist"};
+  if (!fs::exists(fs::symlink_status(library, bad))) throw Refused{"/library: " + library.string() + " does not exist"};
   return library.string();
 }
 

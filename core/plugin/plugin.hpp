@@ -1,5 +1,5 @@
-// plugin.hpp: finds, loads and instantiates plugins. Discovery reads manifests and runs nothing; loading happens only for
-// ids that a case names, from the folders given, never from the working directory.
+// plugin.hpp: finds, loads and instantiates plugins. Discovery reads manifests and runs nothing; loading happens only
+// for ids that a case names, from the folders given, never from the working directory.
 #pragma once
 #include <memory>
 #include <string>
@@ -80,8 +80,8 @@ class PluginRegistry {
                      const std::string& file, const std::vector<std::string>& ignore_keys = {});
 
   /// load + create + check of the table (draft, size, functions, fields). values: of the descriptor's parameter table,
-  /// in its order, SI; json: what extra_schema allows. Throws Error(Fault::settings) with the plugin's own message where
-  /// it finds the case wrong, else Error(Fault::plugin).
+  /// in its order, SI; json: what extra_schema allows. Throws Error(Fault::settings) with the plugin's own message
+  /// where it finds the case wrong, else Error(Fault::plugin).
   InstancePtr create_with_values(const std::string& id, const std::string& kind, const std::string& file,
                                  const std::string& pointer, const std::vector<double>& values,
                                  const std::string& json = "{}");
@@ -95,8 +95,8 @@ class PluginRegistry {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Text of `calx plugin list`, `describe ID`, `schema ID`. list reads manifests only; the other two load the one library.
-/// Throw Error(Fault::plugin) as PluginRegistry::load does.
+/// Text of `calx plugin list`, `describe ID`, `schema ID`. list reads manifests only; the other two load the one
+/// library. Throw Error(Fault::plugin) as PluginRegistry::load does.
 std::string plugin_list_text(const std::vector<std::string>& search);
 std::string plugin_describe_text(const std::string& id, const std::vector<std::string>& search);
 std::string plugin_schema_text(const std::string& id, const std::vector<std::string>& search);

@@ -40,7 +40,8 @@ struct PluginRegistry::Impl {
     for (const PluginManifest& m : manifests) {
       if (m.id == id && m.refused.empty()) {
         if (m.kind != kind)
-          throw Error(Fault::plugin, where + "plugin " + id + " is of the kind " + m.kind + ", but " + kind + " is wanted here");
+          throw Error(Fault::plugin,
+                      where + "plugin " + id + " is of the kind " + m.kind + ", but " + kind + " is wanted here");
         return m;
       }
       if (m.id == id && !refused) refused = &m;

@@ -51,7 +51,9 @@ std::string vector_fault(const calx_field* fields, std::uint32_t count, std::uin
   return "";
 }
 
-std::string lacks(const char* kind, const char* member) { return std::string("its table ") + kind + " lacks " + member; }
+std::string lacks(const char* kind, const char* member) {
+  return std::string("its table ") + kind + " lacks " + member;
+}
 
 std::string law_text_fault(const calx_contact_law& law) {
   if (!law.source && law.source_size == 0) return "";  // a law without a text runs on the CPU only
@@ -75,10 +77,10 @@ std::string contact_law_fault(const calx_contact_law& law) {
     std::uint32_t count;
     bool users_write;
   };
-  for (const Table& t : {Table{"material", law.material, law.material_count, true},
-                         Table{"given", law.given, law.given_count, true},
-                         Table{"pair", law.pair, law.pair_count, false}, Table{"prop", law.prop, law.prop_count, false},
-                         Table{"state", law.state, law.state_count, false}}) {
+  for (const Table& t :
+       {Table{"material", law.material, law.material_count, true}, Table{"given", law.given, law.given_count, true},
+        Table{"pair", law.pair, law.pair_count, false}, Table{"prop", law.prop, law.prop_count, false},
+        Table{"state", law.state, law.state_count, false}}) {
     const std::string fault = field_table_fault(t.name, t.fields, t.count, t.users_write);
     if (!fault.empty()) return fault;
   }
@@ -161,17 +163,14 @@ std::string interface_fault(const std::string& kind, const void* table) {
   const struct {
     const char* id;
     std::size_t size;
-  } sizes[] = {{CALX_CONTACT_LAW, sizeof(calx_contact_law)},
-               {CALX_GEOMETRY, sizeof(calx_geometry)},
-               {CALX_MOTION, sizeof(calx_motion)},
-               {CALX_PARTICLE_FORCE, sizeof(calx_particle_force)},
-               {CALX_SENSOR, sizeof(calx_sensor)},
-               {CALX_STATE, sizeof(calx_state)}};
+  } sizes[] = {{CALX_CONTACT_LAW, sizeof(calx_contact_law)}, {CALX_GEOMETRY, sizeof(calx_geometry)},
+               {CALX_MOTION, sizeof(calx_motion)},           {CALX_PARTICLE_FORCE, sizeof(calx_particle_force)},
+               {CALX_SENSOR, sizeof(calx_sensor)},           {CALX_STATE, sizeof(calx_state)}};
   const auto known = std::find_if(std::begin(sizes), std::end(sizes), [&](const auto& s) { return kind == s.id; });
   if (known == std::end(sizes)) return "this host does not know the kind " + kind;
   if (head.draft != CALX_ABI_DRAFT)
-    return "its table " + kind + " was built against draft " + std::to_string(head.draft) + ", this host speaks draft " +
-           std::to_string(CALX_ABI_DRAFT) + ": rebuild it";
+    return "its table " + kind + " was built against draft " + std::to_string(head.draft) +
+           ", this host speaks draft " + std::to_string(CALX_ABI_DRAFT) + ": rebuild it";
   if (head.struct_size < known->size)
     return "its table " + kind + " has " + std::to_string(head.struct_size) + " bytes, draft " +
            std::to_string(CALX_ABI_DRAFT) + " needs " + std::to_string(known->size) + ": rebuild it";

@@ -1,5 +1,5 @@
-// tables.hpp: does what a plugin hands over keep the contract? Field tables, descriptors, and the function table of every
-// kind. Each check returns what is wrong as the rest of a sentence, or an empty text. Private to core/plugin.
+// tables.hpp: does what a plugin hands over keep the contract? Field tables, descriptors, and the function table of
+// every kind. Each check returns what is wrong as the rest of a sentence, or an empty text. Private to core/plugin.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,8 +14,8 @@ const std::vector<std::string>& known_kinds();
 /// No table is longer than this; the engine's scratch has room for as many.
 constexpr std::uint32_t field_limit = 64;
 
-/// Count, pointer, names, units, ranges, finite presets, vector groups. users_write: users write these fields in a case,
-/// so rows of a vector group must be called NAME_x, NAME_y, NAME_z.
+/// Count, pointer, names, units, ranges, finite presets, vector groups. users_write: users write these fields in a
+/// case, so rows of a vector group must be called NAME_x, NAME_y, NAME_z.
 std::string field_table_fault(const char* table, const calx_field* fields, std::uint32_t count, bool users_write);
 
 std::string descriptor_fault(const calx_descriptor& descriptor);

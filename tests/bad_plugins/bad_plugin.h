@@ -1,5 +1,5 @@
-/* bad_plugin.h: a correct particle force, each part of which the including file may replace by a macro with what it does
- * wrong or otherwise. */
+/* bad_plugin.h: a correct particle force, each part of which the including file may replace by a macro with what it
+ * does wrong or otherwise. */
 #include <calx/all.h>
 #include <string.h>
 
@@ -40,7 +40,9 @@
 #define BAD_DEINIT
 #endif
 #ifndef BAD_CREATE
-#define BAD_CREATE *out = &the_instance; return CALX_OK
+#define BAD_CREATE      \
+  *out = &the_instance; \
+  return CALX_OK
 #endif
 
 struct calx_instance {
@@ -49,14 +51,24 @@ struct calx_instance {
 static struct calx_instance the_instance;
 
 #ifndef BAD_OWN_EVAL
-static void CALX_CALL eval(const calx_instance* self, const calx_particle_block* block) {
-  (void)self, (void)block;
-}
+static void CALX_CALL eval(const calx_instance* self, const calx_particle_block* block) { (void)self, (void)block; }
 #endif
 static const calx_particle_force table = {BAD_TABLE_SIZE, BAD_DRAFT, BAD_EVAL};
 
-static const calx_descriptor descriptor = {sizeof(calx_descriptor), 0, BAD_ID, BAD_KIND, "Bad", "1.0.0",
-                                           "Calx", "Apache-2.0", "A plugin for tests.", BAD_REQUIRED, 0, 0, 0, 0};
+static const calx_descriptor descriptor = {sizeof(calx_descriptor),
+                                           0,
+                                           BAD_ID,
+                                           BAD_KIND,
+                                           "Bad",
+                                           "1.0.0",
+                                           "Calx",
+                                           "Apache-2.0",
+                                           "A plugin for tests.",
+                                           BAD_REQUIRED,
+                                           0,
+                                           0,
+                                           0,
+                                           0};
 
 static uint32_t CALX_CALL count(void) { return 1; }
 static const calx_descriptor* CALX_CALL get_descriptor(uint32_t index) { return index == 0 ? &descriptor : 0; }
@@ -82,5 +94,5 @@ static const void* CALX_CALL get_factory(const char* factory_id) {
   return strcmp(factory_id, CALX_FACTORY) == 0 ? BAD_FACTORY : 0;
 }
 
-CALX_EXPORT const calx_entry calx_plugin_entry = {
-    BAD_MAGIC, BAD_MAJOR, CALX_ABI_MINOR, BAD_ENTRY_SIZE, 0, init, deinit, get_factory};
+CALX_EXPORT const calx_entry calx_plugin_entry = {BAD_MAGIC, BAD_MAJOR, CALX_ABI_MINOR, BAD_ENTRY_SIZE,
+                                                  0,         init,      deinit,         get_factory};

@@ -10,9 +10,20 @@ struct Confused : calx::Instance {
   Confused(const calx_host*, const calx_config&) { throw std::runtime_error("table of moments is empty"); }
   const void* get_interface(const char*) const override { return nullptr; }
 };
-const calx_descriptor Confused::descriptor = {
-    sizeof(calx_descriptor), 0, "test.confused", CALX_PARTICLE_FORCE, "Confused", "1.0.0", "Calx", "Apache-2.0",
-    "Fails by a mistake of its own.", nullptr, nullptr, 0, 0, nullptr};
+const calx_descriptor Confused::descriptor = {sizeof(calx_descriptor),
+                                              0,
+                                              "test.confused",
+                                              CALX_PARTICLE_FORCE,
+                                              "Confused",
+                                              "1.0.0",
+                                              "Calx",
+                                              "Apache-2.0",
+                                              "Fails by a mistake of its own.",
+                                              nullptr,
+                                              nullptr,
+                                              0,
+                                              0,
+                                              nullptr};
 
 void CALX_CALL eval(const calx_instance*, const calx_particle_block*) {}
 const calx_particle_force force = {sizeof(calx_particle_force), CALX_ABI_DRAFT, eval};
@@ -26,9 +37,20 @@ struct Strict : calx::Instance {
     return std::strcmp(id, CALX_PARTICLE_FORCE) == 0 ? &force : nullptr;
   }
 };
-const calx_descriptor Strict::descriptor = {
-    sizeof(calx_descriptor), 0, "test.strict", CALX_PARTICLE_FORCE, "Strict", "1.0.0", "Calx", "Apache-2.0",
-    "Takes a gain up to 2.", nullptr, gain, 1, 0, nullptr};
+const calx_descriptor Strict::descriptor = {sizeof(calx_descriptor),
+                                            0,
+                                            "test.strict",
+                                            CALX_PARTICLE_FORCE,
+                                            "Strict",
+                                            "1.0.0",
+                                            "Calx",
+                                            "Apache-2.0",
+                                            "Takes a gain up to 2.",
+                                            nullptr,
+                                            gain,
+                                            1,
+                                            0,
+                                            nullptr};
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-// The example law of examples/third_party_law through the engine's view of a contact law: tables, derived rows, numbers.
+// The example law of examples/third_party_law through the engine's view of a contact law: tables, derived rows,
+// numbers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -99,13 +100,15 @@ TEST_CASE("the pair row is derived from both materials") {
   const ContactLawEntry e = spring(registry, "{\"gn\": 0.25}");
   const std::vector<double> pair = e.law.derive({0.5}, {1.0}, e.given, "case.json", "/contacts/0");
   CHECK(pair == std::vector<double>{1e4, 0.4375, 8e3, 0.5});  // 0.25 (1 + (0.5 + 1) / 2)
-  CHECK(message_of([&] { e.law.derive({0.5}, {1.0}, {1e4, 0.1, 2e4, 0.5}, "case.json", "/contacts/0"); }) ==
-        "case.json /contacts/0: org.example.spring 1.0.0: kt is above kn; a contact is not stiffer sideways");
   CHECK(message_of([&] {
-          e.law.derive({std::numeric_limits<double>::infinity()}, {0.0}, e.given, "case.json", "/contacts/0");
-        }) ==
-        "case.json /contacts/0: org.example.spring 1.0.0 derives a value of \"gn\" (normal damping, raised by moisture) "
-        "that is not finite; look at the material and contact parameters");
+          e.law.derive({0.5}, {1.0}, {1e4, 0.1, 2e4, 0.5}, "case.json", "/contacts/0");
+        }) == "case.json /contacts/0: org.example.spring 1.0.0: kt is above kn; a contact is not stiffer sideways");
+  CHECK(
+      message_of([&] {
+        e.law.derive({std::numeric_limits<double>::infinity()}, {0.0}, e.given, "case.json", "/contacts/0");
+      }) ==
+      "case.json /contacts/0: org.example.spring 1.0.0 derives a value of \"gn\" (normal damping, raised by moisture) "
+      "that is not finite; look at the material and contact parameters");
   CHECK(message_of([&] { e.law.derive({}, {0.0}, e.given, "case.json", "/contacts/0"); }) ==
         "case.json /contacts/0: org.example.spring 1.0.0: rows of another length than its tables");
 }
@@ -116,8 +119,9 @@ TEST_CASE("stable step and reach") {
   // A tenth of 2 pi sqrt(m / k) = 2 pi 1e-4 s for 1e-4 kg and 1e4 N/m.
   CHECK(law.stable_dt({1e4, 0.1, 8e3, 0.5}, 1e-4, 1e-3, 1e-5) == doctest::Approx(6.283185307179586e-5).epsilon(1e-14));
   CHECK(std::isinf(law.stable_dt({0, 0.1, 0, 0.5}, 1e-4, 1e-3, 1e-5)));
-  CHECK(message_of([&] { law.stable_dt({1e4, 0.1, 8e3, 0.5}, 0.0, 1e-3, 1e-5); }) ==
-        "org.example.spring 1.0.0: its stable step is 0.000000 s; above 0 is needed");
+  CHECK(message_of([&] {
+          law.stable_dt({1e4, 0.1, 8e3, 0.5}, 0.0, 1e-3, 1e-5);
+        }) == "org.example.spring 1.0.0: its stable step is 0.000000 s; above 0 is needed");
   CHECK_FALSE(law.acts_apart());
   CHECK(law.reach({1e4, 0.1, 8e3, 0.5}, 1e-3, 1e-3) == 0);
 }
@@ -161,7 +165,9 @@ TEST_CASE("laws that read one material property in two units cannot share a case
   CHECK(message_of([&] { check_material_units({&law, &law}); }) == "no error");
   PluginRegistry others({bad_folder("other_unit")});
   const ContactLaw other(others.create_with_values("test.other-unit", CALX_CONTACT_LAW, "", "", {}));
-  CHECK(message_of([&] { check_material_units({&law, &other}); }) ==
+  CHECK(message_of([&] {
+          check_material_units({&law, &other});
+        }) ==
         "material property \"moisture\": org.example.spring 1.0.0 reads it in 1, test.other-unit 1.0.0 in kg/m^3; the "
         "two cannot be used in one case");
 }

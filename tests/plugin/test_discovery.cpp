@@ -127,12 +127,13 @@ TEST_CASE("what this host cannot run is refused before anything is loaded") {
   CHECK(refusal(changed("\"draft\": 1", "\"draft\": 2")) ==
         "built against draft 2, this host speaks draft 1: rebuild it");
   CHECK(refusal(changed("calx.particle-force/1", "calx.weather/1")) ==
-        "of the kind calx.weather/1, which this host does not know; it knows \"calx.contact-law/1\", \"calx.geometry/1\", "
+        "of the kind calx.weather/1, which this host does not know; it knows \"calx.contact-law/1\", "
+        "\"calx.geometry/1\", "
         "\"calx.motion/1\", \"calx.particle-force/1\", \"calx.sensor/1\"");
   CHECK(refusal(changed("}]", "}], \"requires\": [\"calx.host.log/1\", \"calx.host.query/1\"]")) ==
         "needs the host extension calx.host.query/1, which this host lacks; it has \"calx.host.log/1\"");
-  CHECK(refusal(changed("\"x.so\"", "{\"linux-riscv99\": \"x.so\"}"))
-            .find("; it has \"linux-riscv99\"") != std::string::npos);
+  CHECK(refusal(changed("\"x.so\"", "{\"linux-riscv99\": \"x.so\"}")).find("; it has \"linux-riscv99\"") !=
+        std::string::npos);
 }
 
 TEST_CASE("keys of a newer minor version are passed over") {
@@ -146,7 +147,7 @@ TEST_CASE("a library must stay inside the folder of its manifest") {
   fs::create_directory(scratch.path("in"));
   fs::create_directory_symlink(elsewhere.path(), scratch.path("in/link"));
   for (const std::string& library : {std::string("../out.so"), elsewhere.path("out.so"), std::string("link/out.so"),
-                                    std::string("../in/../out.so")}) {
+                                     std::string("../in/../out.so")}) {
     const std::string path = scratch.write("in/x.plugin.json", manifest("test.x", library));
     const auto found = discover_plugins({scratch.path("in")});
     REQUIRE(found.size() == 1);

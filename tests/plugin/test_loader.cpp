@@ -31,7 +31,7 @@ TEST_CASE("a path that is not absolute and canonical is refused, whatever lies i
   const fs::path before = fs::current_path();
   fs::current_path(scratch.path());
   for (const std::string& path : {std::string("trap.so"), std::string("./trap.so"), scratch.path("folder/../trap.so"),
-                                 scratch.path("link/trap.so"), std::string("")})
+                                  scratch.path("link/trap.so"), std::string("")})
     CHECK(refusal(path) == path + " is not an absolute path without links");
   fs::current_path(before);
   CHECK_FALSE(fs::exists(scratch.path("trap-was-executed")));

@@ -82,9 +82,10 @@ TEST_CASE("the table of the kind is checked") {
 
 TEST_CASE("a library that changes the rounding mode is refused and the mode put back") {
 #if defined(__x86_64__)
-  CHECK(reason("changes_rounding") ==
-        " changed the floating-point mode of the process when it was loaded (MXCSR 0x1f80 became MXCSR 0x5f80); rebuild "
-        "it without -ffast-math and without fesetround");
+  CHECK(
+      reason("changes_rounding") ==
+      " changed the floating-point mode of the process when it was loaded (MXCSR 0x1f80 became MXCSR 0x5f80); rebuild "
+      "it without -ffast-math and without fesetround");
   CHECK(reason("changes_rounding_in_create") ==
         " changed the floating-point mode of the process in create (MXCSR 0x1f80 became MXCSR 0x3f80)");
 #endif
@@ -96,9 +97,9 @@ TEST_CASE("a library that changes the rounding mode is refused and the mode put 
 TEST_CASE("a manifest that promises what the library does not hold is refused") {
   const std::string folder = bad_folder("lying_manifest"), library = bad_library("lying_manifest");
   const std::string written = folder + "/bad_lying_manifest.plugin.json";
-  CHECK(create("test.not-there", folder).text ==
-        "case.json /forces/0: plugin test.not-there refused: " + library + " holds no plugin test.not-there, although " +
-            written + " says so; it holds \"test.good\"");
+  CHECK(create("test.not-there", folder).text == "case.json /forces/0: plugin test.not-there refused: " + library +
+                                                     " holds no plugin test.not-there, although " + written +
+                                                     " says so; it holds \"test.good\"");
   CHECK(create("test.good", folder, {}, CALX_MOTION).text ==
         "case.json /forces/0: plugin test.good refused: " + library +
             " says test.good is of the kind calx.particle-force/1, but " + written + " says calx.motion/1");
@@ -173,9 +174,9 @@ TEST_CASE("a library changed in place after it was loaded is refused") {
   fs::copy(bad_library("good"), scratch.path("x.so"));
   CHECK(create("test.good", scratch.path()).text == "no error");
   std::ofstream(scratch.path("x.so"), std::ios::app | std::ios::binary) << "x";
-  CHECK(create("test.good", scratch.path()).text == "case.json /forces/0: plugin test.good refused: " +
-                                                        scratch.path("x.so") +
-                                                        " was changed after this process loaded it; start again");
+  CHECK(create("test.good", scratch.path()).text ==
+        "case.json /forces/0: plugin test.good refused: " + scratch.path("x.so") +
+            " was changed after this process loaded it; start again");
 }
 
 TEST_CASE("a library lying in the working directory is never loaded") {
@@ -190,8 +191,9 @@ TEST_CASE("a library lying in the working directory is never loaded") {
   CHECK(create("test.trap", plugins.path()).text ==
         "case.json /forces/0: plugin test.trap refused: bad manifest " + plugins.path("bad_trap.plugin.json") +
             " /library: " + plugins.path("bad_trap.so") + " does not exist");
-  CHECK(create("test.trap", "").text == "case.json /forces/0: no plugin test.trap of the kind calx.particle-force/1 "
-                                        "found in no folder");
+  CHECK(create("test.trap", "").text ==
+        "case.json /forces/0: no plugin test.trap of the kind calx.particle-force/1 "
+        "found in no folder");
   CHECK(create("bad_trap.so", plugins.path()).code == 4);
   CHECK_FALSE(fs::exists(here.path("trap-was-executed")));
 

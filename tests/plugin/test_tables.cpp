@@ -42,7 +42,8 @@ TEST_CASE("a sound field table has no fault") {
 
 TEST_CASE("faults of a field table name table, row and rule") {
   CHECK(fault({field("Kn")}) ==
-        "its given table row 0 is called \"Kn\"; names begin with a lower-case letter and go on with those, digits and _");
+        "its given table row 0 is called \"Kn\"; names begin with a lower-case letter and go on with those, digits and "
+        "_");
   CHECK(fault({field("kn"), field(nullptr)}).find("its given table row 1 is called \"\";") == 0);
   CHECK(fault({field("kn"), field("kn")}) == "its given table has two rows called \"kn\"");
   CHECK(field_table_fault("state", nullptr, 2, false) == "its state table is null but announces 2 rows");
@@ -95,8 +96,7 @@ TEST_CASE("faults of a contact law's table") {
   t = law();
   t.pair = rows;
   t.pair_count = 2;
-  CHECK(fault(t) ==
-        "it has no derive, so its given and pair tables must be the same, but they have 0 and 2 rows");
+  CHECK(fault(t) == "it has no derive, so its given and pair tables must be the same, but they have 0 and 2 rows");
   t.given = rows;
   t.given_count = 2;
   CHECK(fault(t) == "");
