@@ -109,8 +109,12 @@ std::string ledger_table(const SensorSeries& s) {
 }
 
 // summary.json's ledger: "inserted" with "inserted_count" beside it.
-std::string ledger_table(const std::vector<NamedValue>& mass) {
+std::string ledger_table(std::vector<NamedValue> mass) {
   std::vector<std::vector<std::string>> rows = {{"Where", "Particles", "Mass"}};
+  // In the order of a balance: what was asked for, what came, where it is, what left; then everything else.
+  const std::vector<std::string> order = {"requested", "delivered", "inserted", "inside", "removed", "left", "lost"};
+  const auto rank = [&](const NamedValue& v) { return std::find(order.begin(), order.end(), v.name) - order.begin(); };
+  std::stable_sort(mass.begin(), mass.end(), [&](const NamedValue& a, const NamedValue& b) { return rank(a) < rank(b); });
   for (const NamedValue& v : mass) {
     const std::size_t end = v.name.rfind("count");
     const bool is_count = end != std::string::npos && end > 0 && end + 5 == v.name.size();

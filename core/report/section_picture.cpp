@@ -88,8 +88,8 @@ std::string scale_bar(double width_m, double pixels_per_m, double x, double y) {
 }  // namespace
 
 std::string speed_colour(double share) {
-  static const double anchors[6][3] = {{44, 66, 117}, {33, 120, 160}, {60, 166, 150}, {158, 205, 110}, {246, 200, 72},
-                                       {214, 69, 45}};
+  static const double anchors[6][3] = {{116, 142, 184}, {52, 136, 178}, {64, 172, 142}, {166, 206, 96}, {247, 192, 66},
+                                       {212, 62, 42}};
   const double at = 5 * std::min(1.0, std::max(0.0, share));
   const int k = std::min(4, static_cast<int>(at));
   char text[8];

@@ -34,6 +34,24 @@ Chart against_time(const std::string& title, const std::string& quantity, const 
   return chart;
 }
 
+// "centre x" and "centre z" have "centre" in common; "wall work" and "inserted" have nothing.
+std::string common_words(const std::string& a, const std::string& b) {
+  std::size_t same = 0;
+  while (same < a.size() && same < b.size() && a[same] == b[same]) ++same;
+  if (same == a.size() && (same == b.size() || b[same] == ' ')) return a;
+  if (same == b.size() && a[same] == ' ') return b;
+  const std::size_t blank = a.rfind(' ', same);
+  return blank == std::string::npos || blank > same ? "" : a.substr(0, blank);
+}
+
+std::string quantity_name(const std::string& unit) {
+  static const std::map<std::string, std::string> names = {
+      {"N", "force"}, {"N m", "torque"}, {"J", "energy"},  {"W", "power"},     {"kg", "mass"},      {"kg/s", "mass flow"},
+      {"m", "length"}, {"m/s", "speed"}, {"deg", "angle"}, {"rad", "angle"}, {"Pa", "pressure"}, {"s", "time"}};
+  const auto at = names.find(unit);
+  return at == names.end() ? "value" : at->second;
+}
+
 std::string sensor_caption(const SensorSeries& s) {
   return "Sensor " + html_text(s.name) + (s.kind.empty() ? "" : ", kind " + html_text(s.kind)) +
          (s.every > 0 ? ", every " + format_quantity(s.every, "s", 3) : "") + ".";
@@ -65,7 +83,21 @@ std::string cycle_charts(Page& page, const CycleFigures& c) {
                    " (" + format_number(100 * c.per_cycle.deviation / c.per_cycle.mean, 2) + "\xc2\xa0%) over " +
                    std::to_string(c.per_cycle.count) + " cycles, from cycle " + format_number(c.first) + " on.";
   }
-  return page.chart(line) + page.chart(bars);
+  std::string out = page.chart(line) + page.chart(bars);
+  if (c.per_cycle.count > 1) {
+    Chart scatter = bars;
+    scatter.title = "Scatter of the mass per cycle";
+    scatter.y.from_zero = false;
+    ChartSeries points{ChartSeries::Style::points, "mass per cycle", {}, {}, {}, 0};
+    for (std::size_t k = 0; k < c.cycle.size(); ++k) {
+      if (c.cycle[k] < c.first) continue;
+      points.x.push_back(c.cycle[k]), points.y.push_back(c.each[k] * each_unit.factor);
+    }
+    scatter.series = {points};
+    scatter.caption = "The same figures, axis not from zero. Line: mean; band: one standard deviation on either side.";
+    out += page.chart(scatter);
+  }
+  return out;
 }
 
 }  // namespace
@@ -100,9 +132,9 @@ std::string Sections::sensor_charts(const SensorSeries& s, const std::set<std::s
     for (std::size_t k : group) high = std::max(high, largest(s.values[k]));
     const DisplayUnit unit = display_unit(first.unit, high);
     std::string quantity = first.title;
-    if (group.size() > 1) quantity = first.unit == "N" ? "force" : first.unit == "N m" ? "torque" : first.unit == "J" ? "energy"
-        : first.unit == "kg" ? "mass" : first.unit == "m" ? "length" : first.unit == "deg" ? "angle" : first.title;
-    Chart chart = against_time(s.name + ": " + quantity, quantity, unit.unit);
+    for (std::size_t k : group) quantity = common_words(quantity, quantity_of(s.columns[k]).title);
+    if (quantity.empty()) quantity = quantity_name(first.unit);
+    Chart chart = against_time(quantity == s.name ? s.name : s.name + ": " + quantity, quantity, unit.unit);
     bool empty = true;
     for (std::size_t k : group) {
       for (double v : s.values[k]) empty = empty && !std::isfinite(v);
@@ -204,7 +236,7 @@ void Sections::pile() {
       chart.series.push_back(points);
       out += page.chart(chart);
     }
-    out += sensor_charts(s, {"sectors_1", "bins_1"});
+    out += sensor_charts(s, {"sectors_1", "bins_1", "sd_deg", "left_sd_deg", "right_sd_deg"});
   }
   if (out.empty()) {
     out = html_absent("No pile: the case has no sensor of kind height-map or angle-of-repose, or none has given a result yet.");
