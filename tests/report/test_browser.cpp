@@ -44,15 +44,18 @@ Visit visit(const std::string& page, const std::string& scratch) {
       "timeout 120 " + browser() +
       " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
       "--disable-component-update --disable-sync --use-angle=swiftshader --enable-unsafe-swiftshader "
-      "--host-resolver-rules='MAP * ~NOTFOUND' --enable-logging=stderr --virtual-time-budget=15000 --window-size=1280,900 "
-      "--user-data-dir=" + scratch + "/profile --dump-dom file://" + page + " >" + scratch + "/dom 2>" + scratch + "/log";
+      "--host-resolver-rules='MAP * ~NOTFOUND' --enable-logging=stderr --virtual-time-budget=15000 "
+      "--window-size=1280,900 "
+      "--user-data-dir=" +
+      scratch + "/profile --dump-dom file://" + page + " >" + scratch + "/dom 2>" + scratch + "/log";
   const int status = std::system(command.c_str());
   CHECK(status == 0);
   Visit out;
   out.dom = slurp(scratch + "/dom");
   std::istringstream log(slurp(scratch + "/log"));
   for (std::string line; std::getline(log, line);) {
-    if (line.find("CONSOLE") != std::string::npos && line.find("GL Driver Message") == std::string::npos) out.complaints.push_back(line);
+    if (line.find("CONSOLE") != std::string::npos && line.find("GL Driver Message") == std::string::npos)
+      out.complaints.push_back(line);
   }
   return out;
 }
@@ -84,6 +87,52 @@ TEST_CASE("every chart and picture is drawn and the console stays empty") {
   // A blank picture of this size compresses to a few kB.
   const std::size_t picture = seen.dom.find("<img src=\"data:image/png;base64,");
   CHECK(seen.dom.find('"', picture + 12) - picture > 20000);
+}
+
+TEST_CASE("the playback's controls work") {
+  if (browser().empty()) return;
+  const ScratchFolder folder;
+  calx_test::SampleOptions options;
+  options.grains = 200;
+  options.frames_every = 2;
+  options.sample_every = 0.5;
+  calx_test::write_sample_run(folder.path(), options);
+  std::string page = slurp(calx::write_report(folder.path()));
+  // Without a screen the browser gives no animation frames; a timer stands in for them.
+  page.insert(page.find("<header>"),
+              "<script>window.requestAnimationFrame = function (f) { return setTimeout(function () { "
+              "f(performance.now()); }, 20); };</script>");
+  // Sets every control, leaves what the clock says in the page's text, then plays for a while.
+  page.insert(page.rfind("</body>"), R"(<pre id="protocol"></pre><script>
+    var protocol = document.getElementById("protocol"), clock = document.querySelector(".clock");
+    function say(text) { protocol.textContent += "[" + text + "]"; }
+    function set(id, value, event) { var e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event(event)); }
+    document.getElementById("smooth").click();
+    set("slider", 500, "input"); say("middle " + clock.firstChild.textContent);
+    document.getElementById("smooth").click();
+    set("slider", 500, "input"); say("smooth " + clock.firstChild.textContent);
+    set("cut", "none", "change"); set("cut", "parts", "change"); set("cut-angle", 90, "input");
+    set("opacity", 30, "input"); set("colour", "radius", "change"); say(document.getElementById("scale").textContent);
+    document.querySelectorAll("#views button").forEach(function (b) { b.click(); });
+    document.querySelectorAll("#parts button").forEach(function (b) { b.click(); });
+    say(document.querySelectorAll("#parts button.off").length + " parts hidden");
+    set("rate", "2", "change");
+    document.getElementById("play").click();
+    setTimeout(function () { document.getElementById("play").click(); say(parseFloat(clock.textContent.slice(4)) > 11.5 ? "it moves" : "it stands"); }, 3000);
+    </script>)");
+  std::ofstream(folder.path() + "/touched.html") << page;
+  const Visit seen = visit(folder.path() + "/touched.html", folder.path());
+  for (const std::string& line : seen.complaints) FAIL_CHECK(line);
+  const std::size_t from = seen.dom.find("<pre id=\"protocol\">");
+  REQUIRE(from != std::string::npos);
+  const std::string protocol = seen.dom.substr(from, seen.dom.find("</pre>", from) - from);
+  CAPTURE(protocol);
+  // Frames stand every 2 s from 0 to 22 s.
+  CHECK(protocol.find("[middle t = 10.000 s]") != std::string::npos);
+  CHECK(protocol.find("[smooth t = 11.000 s]") != std::string::npos);
+  CHECK(protocol.find("3.6 mm]") != std::string::npos);
+  CHECK(protocol.find("[5 parts hidden]") != std::string::npos);
+  CHECK(protocol.find("[it moves]") != std::string::npos);
 }
 
 TEST_CASE("a page of an empty folder works too") {

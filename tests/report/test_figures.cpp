@@ -54,8 +54,13 @@ TEST_CASE("quantities are shown with a readable prefix") {
   CHECK(format_quantity(0.0025, "m") == "2.5\xc2\xa0mm");
   CHECK(format_quantity(15000, "Pa") == "15\xc2\xa0kPa");
   CHECK(format_quantity(std::nan(""), "kg") == "-");
-  CHECK(format_count(3884297) == "3\xc2\xa0" "884\xc2\xa0" "297");
-  CHECK(format_count(-1000) == "-1\xc2\xa0" "000");
+  CHECK(format_count(3884297) ==
+        "3\xc2\xa0"
+        "884\xc2\xa0"
+        "297");
+  CHECK(format_count(-1000) ==
+        "-1\xc2\xa0"
+        "000");
   CHECK(format_count(999) == "999");
 }
 
@@ -101,7 +106,9 @@ TEST_CASE("a chart is valid JSON that cannot end its script element") {
 TEST_CASE("statistics of the dose leave out the first two of many cycles and repeated rows") {
   SensorSeries s;
   s.columns = {"cycle_1", "mass_kg", "total_kg"};
-  s.values = {{0, 1, 1, 2, 3, 4, 5, 5}, {0, 0.02, 0.02, 0.04, 0.05, 0.06, 0.055, 0.055}, {0, 0.02, 0.02, 0.06, 0.11, 0.17, 0.225, 0.225}};
+  s.values = {{0, 1, 1, 2, 3, 4, 5, 5},
+              {0, 0.02, 0.02, 0.04, 0.05, 0.06, 0.055, 0.055},
+              {0, 0.02, 0.02, 0.06, 0.11, 0.17, 0.225, 0.225}};
   s.time = {0, 1, 2, 3, 4, 5, 6, 7};
   const CycleFigures c = cycle_figures(s);
   CHECK(c.cycle == std::vector<double>{1, 2, 3, 4, 5});

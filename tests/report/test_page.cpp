@@ -59,7 +59,9 @@ calx_test::SampleOptions small() {
 }  // namespace
 
 TEST_CASE("base64 as in RFC 4648") {
-  const auto text = [](const std::string& s) { return base64(reinterpret_cast<const unsigned char*>(s.data()), s.size()); };
+  const auto text = [](const std::string& s) {
+    return base64(reinterpret_cast<const unsigned char*>(s.data()), s.size());
+  };
   CHECK(text("") == "");
   CHECK(text("f") == "Zg==");
   CHECK(text("fo") == "Zm8=");
@@ -93,9 +95,10 @@ TEST_CASE("a finished run gives its figures, charts, assumptions and provenance"
     CHECK_FALSE(chart["x"]["title"].get<std::string>().empty());
     CHECK_FALSE(chart["y"]["title"].get<std::string>().empty());
   }
-  for (const char* title : {"canister mass against time", "Mass against cycle", "Mass per cycle", "nozzle flow: rate", "bed: section",
-                            "bed: azimuthal mean", "bed: height seen from above", "pile: angle of repose", "Energy ledger",
-                            "Energy remainder", "rotor load: torque", "contacts <all>: coordination", "residue: mass"}) {
+  for (const char* title :
+       {"canister mass against time", "Mass against cycle", "Mass per cycle", "nozzle flow: rate", "bed: section",
+        "bed: azimuthal mean", "bed: height seen from above", "pile: angle of repose", "Energy ledger",
+        "Energy remainder", "rotor load: torque", "contacts <all>: coordination", "residue: mass"}) {
     CAPTURE(title);
     CHECK(std::count(titles.begin(), titles.end(), title) == 1);
   }
@@ -113,7 +116,8 @@ TEST_CASE("the page refers to nothing outside itself and its data cannot become 
   CHECK_FALSE(has(page, "@import"));
   CHECK_FALSE(has(page, "<link"));
   // Elements with an address: none may carry one but the menu's "#section".
-  const std::regex address("<(script|img|iframe|link|source|object|embed)[^>]{0,200}(src|href|data)\\s*=\\s*\"(?!data:|#)");
+  const std::regex address(
+      "<(script|img|iframe|link|source|object|embed)[^>]{0,200}(src|href|data)\\s*=\\s*\"(?!data:|#)");
   std::size_t lines = 0;
   std::istringstream in(page);
   for (std::string line; std::getline(in, line); ++lines) {
@@ -125,9 +129,10 @@ TEST_CASE("the page refers to nothing outside itself and its data cannot become 
 TEST_CASE("an empty folder gives a page that says what is missing and why") {
   const ScratchFolder folder;
   const std::string page = slurp(write_report(folder.path()));
-  for (const char* text : {"no summary yet", "summary.json is not there", "case.json is not there", "No pictures: particles.h5",
-                           "No mass against time: the case has no sensor of kind mass", "no sensor of kind cycle-mass", "No pile:",
-                           "No energy ledger:", "No mass ledger:", "No loads on parts:", "No time-step limits:", "No provenance:", "No case:"}) {
+  for (const char* text : {"no summary yet", "summary.json is not there", "case.json is not there",
+                           "No pictures: particles.h5", "No mass against time: the case has no sensor of kind mass",
+                           "no sensor of kind cycle-mass", "No pile:", "No energy ledger:", "No mass ledger:",
+                           "No loads on parts:", "No time-step limits:", "No provenance:", "No case:"}) {
     CAPTURE(text);
     CHECK(has(page, text));
   }
@@ -153,7 +158,8 @@ TEST_CASE("broken files become notes, a missing folder an error") {
   const ScratchFolder folder;
   std::ofstream(folder.path() + "/summary.json") << "{\"status\": \"run";
   std::ofstream(folder.path() + "/particles.h5") << "not HDF5";
-  std::ofstream(folder.path() + "/fields.json") << R"({"fields": [{"sensor": "s", "name": "height", "nx": 2, "ny": 2, "cell": 1, "values": [1]}]})";
+  std::ofstream(folder.path() + "/fields.json")
+      << R"({"fields": [{"sensor": "s", "name": "height", "nx": 2, "ny": 2, "cell": 1, "values": [1]}]})";
   const std::string page = slurp(write_report(folder.path()));
   CHECK(has(page, "summary.json is not valid JSON"));
   CHECK(has(page, "particles.h5 could not be read"));
@@ -165,6 +171,20 @@ TEST_CASE("broken files become notes, a missing folder an error") {
     CHECK(e.fault() == Fault::files);
     CHECK(has(e.what(), "nowhere is not a folder"));
   }
+}
+
+TEST_CASE("values of an unexpected type do no harm") {
+  const ScratchFolder folder;
+  std::ofstream(folder.path() + "/summary.json")
+      << R"({"title": 7, "status": null, "time": "x", "mass": [1], "energy": "none", "sensors": [1, {"kind": 3}], "step_limits": 4,
+             "provenance": {"plugins": ["calx.epam", {"id": "calx.stl", "version": 2}], "seed": {"a": 1}}, "assumptions": "one",
+             "deviations": [null, {"figure": "dose", "value": 2, "reference": 0}], "events": {"a": {"name": "b", "time": 1}}})";
+  std::ofstream(folder.path() + "/case.json") << R"({"gravity": "down", "time": 5, "assumptions": {"a": "b"}})";
+  std::ofstream(folder.path() + "/fields.json") << R"({"fields": [3], "curves": [{"x": [1, null], "y": [2, "a"]}]})";
+  const std::string page = slurp(write_report(folder.path()));
+  CHECK(has(page, "<h1>7</h1>"));
+  CHECK(has(page, "calx.stl"));
+  CHECK(has(page, "Assumptions (1)"));
 }
 
 TEST_CASE("packed frames give positions, speeds and poses back") {
@@ -192,7 +212,8 @@ TEST_CASE("packed frames give positions, speeds and poses back") {
     for (std::size_t k = 0; k < 3; ++k) {
       const double lo = meta["lo"][k], hi = meta["hi"][k];
       // Half a step of 16 bits, and the rounding of single precision.
-      CHECK(std::fabs(lo + word(k) / 65535 * (hi - lo) - static_cast<double>(axes[k][i])) <= 0.51 * (hi - lo) / 65535 + 1e-7);
+      CHECK(std::fabs(lo + word(k) / 65535 * (hi - lo) - static_cast<double>(axes[k][i])) <=
+            0.51 * (hi - lo) / 65535 + 1e-7);
     }
     const double share = (word(3) - 1) / 65534, speed = share * share * meta["highestSpeed"].get<double>();
     CHECK(speed == doctest::Approx(static_cast<double>(frame.speed[i])).epsilon(0.01));
@@ -226,7 +247,8 @@ TEST_CASE("the section shows spheres behind the plane and the cut of the parts")
   FrameData frame;
   frame.parts.resize(1);
   for (float y : {-0.05f, 0.05f, 0.15f, 0.25f}) {
-    frame.x.push_back(0.5f), frame.y.push_back(y), frame.z.push_back(0), frame.radius.push_back(0.1f), frame.speed.push_back(1);
+    frame.x.push_back(0.5f), frame.y.push_back(y), frame.z.push_back(0), frame.radius.push_back(0.1f),
+        frame.speed.push_back(1);
     frame.particle.push_back(static_cast<std::uint32_t>(frame.particle.size()));
   }
   const SectionPicture picture = draw_section(set, frame, {0, 0, -9.81}, 1);

@@ -90,7 +90,11 @@
     if (xs[0] === xs[1]) { xs[0] -= 0.5; xs[1] += 0.5; }
     if (ys[0] === ys[1]) { var d = Math.abs(ys[0]) * 0.1 || 1; ys[0] -= ys[0] === 0 ? 0 : d; ys[1] += d; }
     if (spec.series.some(function (s) { return s.style === "bars"; })) { xs[0] -= 0.6; xs[1] += 0.6; }
-    if (spec.series.some(function (s) { return s.style === "points"; })) xs[1] += 0.025 * (xs[1] - xs[0]);
+    if (spec.series.some(function (s) { return s.style === "points"; })) {
+      // Room for whole dots at the ends.
+      var room = 0.025 * (xs[1] - xs[0]);
+      xs = [xs[0] === 0 ? 0 : xs[0] - room, xs[1] + room];
+    }
     if (spec.x.categories) xs = [-0.5, spec.x.categories.length - 0.5];
     return { x: xs, y: ys };
   }
