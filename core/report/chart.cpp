@@ -20,11 +20,16 @@ void write_axis(JsonText& out, const std::string& name, const ChartAxis& axis) {
 
 const char* style_name(ChartSeries::Style style) {
   switch (style) {
-    case ChartSeries::Style::line: return "line";
-    case ChartSeries::Style::dashed: return "dashed";
-    case ChartSeries::Style::points: return "points";
-    case ChartSeries::Style::bars: return "bars";
-    case ChartSeries::Style::area: return "area";
+    case ChartSeries::Style::line:
+      return "line";
+    case ChartSeries::Style::dashed:
+      return "dashed";
+    case ChartSeries::Style::points:
+      return "points";
+    case ChartSeries::Style::bars:
+      return "bars";
+    case ChartSeries::Style::area:
+      return "area";
   }
   return "line";
 }

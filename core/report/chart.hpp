@@ -9,7 +9,7 @@
 namespace calx {
 
 struct ChartAxis {
-  std::string title, unit;              // shown as "mass, kg"
+  std::string title, unit;  // shown as "mass, kg"
   bool from_zero = false;
   std::vector<std::string> categories;  // names for x = 0, 1, 2, ...; empty: numbers
 };

@@ -20,13 +20,13 @@ struct CycleFigures {
 };
 
 struct KeyFigures {
-  const SensorSeries* fill = nullptr;      // the mass sensor that tells how full the vessel is
-  double filled = std::numeric_limits<double>::quiet_NaN();            // kg, its last value
-  CycleFigures cycles;                     // no cycles: empty
+  const SensorSeries* fill = nullptr;                        // the mass sensor that tells how full the vessel is
+  double filled = std::numeric_limits<double>::quiet_NaN();  // kg, its last value
+  CycleFigures cycles;                                       // no cycles: empty
   double energy_remainder = std::numeric_limits<double>::quiet_NaN();  // J
   double energy_work = std::numeric_limits<double>::quiet_NaN();       // J, the scale for the remainder
   enum class Closed { yes, no, unknown } ledger = Closed::unknown;
-  std::string ledger_text;                 // what was compared
+  std::string ledger_text;  // what was compared
 };
 KeyFigures key_figures(const RunFolder& run);
 

@@ -9,11 +9,20 @@ std::string html_text(const std::string& plain) {
   out.reserve(plain.size());
   for (char c : plain) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -26,7 +35,8 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows, std::s
     out += r == 0 ? "<thead><tr>" : r == 1 ? "<tbody><tr>" : "<tr>";
     const char* tag = r == 0 ? "th" : "td";
     for (std::size_t k = 0; k < rows[r].size(); ++k) {
-      out += std::string("<") + tag + (k >= number_columns_from ? " class=\"n\">" : ">") + rows[r][k] + "</" + tag + ">";
+      out +=
+          std::string("<") + tag + (k >= number_columns_from ? " class=\"n\">" : ">") + rows[r][k] + "</" + tag + ">";
     }
     out += r == 0 ? "</tr></thead>" : "</tr>";
   }
@@ -38,8 +48,9 @@ std::string html_absent(const std::string& why) { return "<p class=\"absent\">" 
 std::string Page::chart(const Chart& chart) {
   if (chart_count_ == 0) charts_.begin_array();
   write_json(charts_, chart);
-  std::string out = "<figure class=\"chart" + std::string(chart.wide ? " wide" : "") + "\"><h3>" + html_text(chart.title) +
-                    "</h3><div class=\"plot\" data-chart=\"" + std::to_string(chart_count_) + "\"></div>";
+  std::string out = "<figure class=\"chart" + std::string(chart.wide ? " wide" : "") + "\"><h3>" +
+                    html_text(chart.title) + "</h3><div class=\"plot\" data-chart=\"" + std::to_string(chart_count_) +
+                    "\"></div>";
   ++chart_count_;
   if (!chart.caption.empty()) out += "<figcaption>" + chart.caption + "</figcaption>";
   return out + "</figure>";
@@ -59,10 +70,11 @@ std::string Page::html() const {
   std::string out;
   out.reserve(frames_.size() + charts_.text().size() + 2000000);
   // The policy makes the browser refuse every request, so that the page shows the same with and without a network.
-  out += "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
-         "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
+  out +=
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
   out += html_text(title_) + "</title>\n<style>\n";
   out += asset_style();
   out += "</style></head>\n<body>\n<header>" + header_ + "</header>\n<nav>";
@@ -73,8 +85,9 @@ std::string Page::html() const {
   for (const Section& s : sections_) {
     out += "<section id=\"" + s.id + "\"><h2>" + html_text(s.heading) + "</h2>\n" + s.content + "\n</section>\n";
   }
-  out += "</main>\n<footer>Written by calx. Contains three.js (MIT licence, three.js authors) and D3 (BSD 3-clause "
-         "licence, Michael Bostock). This page makes no network request.</footer>\n";
+  out +=
+      "</main>\n<footer>Written by calx. Contains three.js (MIT licence, three.js authors) and D3 (BSD 3-clause "
+      "licence, Michael Bostock). This page makes no network request.</footer>\n";
   out += "<script type=\"application/json\" id=\"charts\">" + (chart_count_ > 0 ? charts_.text() + "]" : "[]") +
          "</script>\n<script>\n";
   out += asset_d3();

@@ -24,7 +24,8 @@ class Page {
   /// Keeps the chart and returns the figure element it will be drawn in.
   std::string chart(const Chart& chart);
   /// content: HTML. in_menu: the short name in the page's menu; empty: not there.
-  void section(const std::string& id, const std::string& heading, const std::string& in_menu, const std::string& content);
+  void section(const std::string& id, const std::string& heading, const std::string& in_menu,
+               const std::string& content);
   void header(const std::string& content) { header_ = content; }
   /// playback_json: meta data of the playback ("" when there is none); frames: base64, one line per frame.
   void playback(const std::string& playback_json, const std::string& frames);

@@ -164,18 +164,20 @@ Playback pack_playback(const RunFolder& run, const PlaybackLimits& limits) {
                format_count(static_cast<double>(slots.seen_particles)) + " particles are drawn, evenly chosen. ";
   }
   if (out.chosen.size() < recorded) {
-    out.note += std::to_string(out.chosen.size()) + " of " + std::to_string(recorded) +
-                " recorded frames are embedded. ";
+    out.note +=
+        std::to_string(out.chosen.size()) + " of " + std::to_string(recorded) + " recorded frames are embedded. ";
   }
   if (!out.note.empty()) out.note += "All of them are in particles.h5 and frames.pvd.";
   const Box box = seen.most_spheres > 0 ? seen.box : Box{{0, 0, 0}, {0, 0, 0}};
   json.key("lo").values({box.lo.x, box.lo.y, box.lo.z}, 9).key("hi").values({box.hi.x, box.hi.y, box.hi.z}, 9);
   json.key("up").values({-run.gravity.x, -run.gravity.y, -run.gravity.z});
-  json.member("spheres", static_cast<double>(slots.count)).member("highestSpeed", static_cast<double>(seen.highest_speed));
+  json.member("spheres", static_cast<double>(slots.count))
+      .member("highestSpeed", static_cast<double>(seen.highest_speed));
   json.member("everyFrame", out.chosen.size() == recorded);
   json.member("radii", base64_of(radius));
   json.key("events").begin_array();
-  for (const NamedValue& e : run.events) json.begin_object().member("name", e.name).member("time", e.value).end_object();
+  for (const NamedValue& e : run.events)
+    json.begin_object().member("name", e.name).member("time", e.value).end_object();
   json.end_array();
   write_parts(json, run.frames);
   json.end_object();

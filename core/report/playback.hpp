@@ -11,9 +11,9 @@ namespace calx {
 std::string base64(const unsigned char* bytes, std::size_t count);
 
 struct PlaybackLimits {
-  std::size_t spheres = 60000;      // beyond: every n-th particle
-  std::size_t bytes = 18000000;     // of packed positions before base64
-  std::size_t frames = 40;          // as many at least, when recorded and when they fit
+  std::size_t spheres = 60000;        // beyond: every n-th particle
+  std::size_t bytes = 18000000;       // of packed positions before base64
+  std::size_t frames = 40;            // as many at least, when recorded and when they fit
   std::size_t small_bytes = 8000000;  // small runs get more frames up to this size,
   std::size_t most_frames = 120;      // and never more than this
 };
@@ -25,7 +25,7 @@ struct Playback {
   std::string frames;               // one base64 line per frame
   std::vector<std::size_t> chosen;  // frame numbers in particles.h5
   std::size_t spheres = 0, recorded_spheres = 0;
-  std::string note;                 // what was left out; empty when nothing was
+  std::string note;  // what was left out; empty when nothing was
 };
 /// set must hold a frame.
 Playback pack_playback(const RunFolder& run, const PlaybackLimits& limits = {});

@@ -4,8 +4,8 @@
 
 namespace calx {
 
-/// Writes dir/report.html from summary.json, case.json, series/*.csv, fields.json and particles.h5; works for a run that is
-/// still going. Returns the page's path. Throws Error(Fault::files).
+/// Writes dir/report.html from summary.json, case.json, series/*.csv, fields.json and particles.h5; works for a run
+/// that is still going. Returns the page's path. Throws Error(Fault::files).
 std::string write_report(const std::string& dir);
 
 }  // namespace calx

@@ -42,6 +42,13 @@ json load_json(const std::string& dir, const std::string& file, const std::strin
   return out;
 }
 
+// Null when object is no object or has no such key.
+json member(const json& object, const char* key) {
+  if (!object.is_object()) return json();
+  const auto at = object.find(key);
+  return at == object.end() ? json() : *at;
+}
+
 double number(const json& object, const char* key, double fallback) {
   if (!object.is_object()) return fallback;
   const auto at = object.find(key);
@@ -117,24 +124,24 @@ void read_summary(const json& all, RunFolder& run) {
   run.wall_seconds = number(all, "wall_seconds", -1);
   run.particle_steps_per_second = number(all, "particle_steps_per_second", -1);
   run.time_step = number(all, "time_step", -1);
-  flatten(all.value("mass", json()), "", run.mass);
-  flatten(all.value("energy", json()), "", run.energy);
-  const json sensors = all.value("sensors", json::object());
+  flatten(member(all, "mass"), "", run.mass);
+  flatten(member(all, "energy"), "", run.energy);
+  const json sensors = member(all, "sensors");
   for (const auto& item : sensors.items()) {
     SensorSeries s;
     s.name = item.key();
     s.kind = text_of(item.value(), {"kind"});
     s.every = number(item.value(), "every", 0);
-    if (item.value().is_object()) flatten(item.value().value("last", json()), "", s.last);
+    if (item.value().is_object()) flatten(member(item.value(), "last"), "", s.last);
     run.sensors.push_back(s);
   }
-  for (const json& row : all.value("step_limits", json::array())) {
+  for (const json& row : member(all, "step_limits")) {
     run.limits.push_back({text_of(row, {"name"}), text_of(row, {"where"}), number(row, "seconds", 0),
-                          row.is_object() && row.value("binds", json(false)) == json(true)});
+                          member(row, "binds") == json(true)});
   }
-  read_provenance(all.value("provenance", json()), run);
-  for (const json& row : all.value("assumptions", json::array())) run.assumptions.push_back(plain(row));
-  for (const json& row : all.value("deviations", json::array())) {
+  read_provenance(member(all, "provenance"), run);
+  for (const json& row : member(all, "assumptions")) run.assumptions.push_back(plain(row));
+  for (const json& row : member(all, "deviations")) {
     DeviationRow d;
     d.text = row.is_object() ? text_of(row, {"figure", "name", "text"}) : plain(row);
     d.unit = text_of(row, {"unit"});
@@ -144,7 +151,7 @@ void read_summary(const json& all, RunFolder& run) {
     d.has_numbers = row.is_object() && row.contains("value") && row.contains("reference");
     run.deviations.push_back(d);
   }
-  for (const json& row : all.value("events", json::array())) {
+  for (const json& row : member(all, "events")) {
     const double t = number(row, "time", -1);
     if (t >= 0) run.events.push_back({text_of(row, {"name"}), t});
   }
@@ -156,14 +163,14 @@ void read_case_facts(const json& all, RunFolder& run) {
   if (!all.is_object()) return;
   run.case_text = all.dump(2, ' ', false, json::error_handler_t::replace);
   if (run.title.empty()) run.title = text_of(all, {"title"});
-  run.time_end = number(all.value("time", json()), "end", 0);
-  const json gravity = all.value("gravity", json());
+  run.time_end = number(member(all, "time"), "end", 0);
+  const json gravity = member(all, "gravity");
   if (gravity.is_array() && gravity.size() == 3 && gravity[0].is_number() && gravity[1].is_number() &&
       gravity[2].is_number()) {
     run.gravity = {gravity[0].get<double>(), gravity[1].get<double>(), gravity[2].get<double>()};
   }
   if (run.assumptions.empty()) {
-    for (const json& row : all.value("assumptions", json::array())) run.assumptions.push_back(plain(row));
+    for (const json& row : member(all, "assumptions")) run.assumptions.push_back(plain(row));
   }
 }
 
@@ -207,16 +214,16 @@ std::vector<double> numbers(const json& array) {
 
 void read_fields(const json& all, RunFolder& run) {
   if (!all.is_object()) return;
-  for (const json& row : all.value("fields", json::array())) {
+  for (const json& row : member(all, "fields")) {
     FieldResult f;
     f.name = text_of(row, {"name"});
     f.unit = text_of(row, {"unit"});
     f.nx = static_cast<std::size_t>(std::max(0.0, number(row, "nx", 0)));
     f.ny = static_cast<std::size_t>(std::max(0.0, number(row, "ny", 0)));
     f.cell = number(row, "cell", 0);
-    const std::vector<double> origin = numbers(row.value("origin", json()));
+    const std::vector<double> origin = numbers(member(row, "origin"));
     if (origin.size() == 3) f.origin = {origin[0], origin[1], origin[2]};
-    f.values = numbers(row.value("values", json()));
+    f.values = numbers(member(row, "values"));
     if (f.cell > 0 && f.nx > 0 && f.values.size() == f.nx * f.ny) {
       run.fields.emplace_back(text_of(row, {"sensor"}), f);
     } else {
@@ -224,13 +231,13 @@ void read_fields(const json& all, RunFolder& run) {
                           " values for " + std::to_string(f.nx) + " x " + std::to_string(f.ny) + " cells: not drawn");
     }
   }
-  for (const json& row : all.value("curves", json::array())) {
+  for (const json& row : member(all, "curves")) {
     CurveResult c;
     c.name = text_of(row, {"name"});
     c.x_name = text_of(row, {"x_name"});
     c.y_name = text_of(row, {"y_name"});
-    c.x = numbers(row.value("x", json()));
-    c.y = numbers(row.value("y", json()));
+    c.x = numbers(member(row, "x"));
+    c.y = numbers(member(row, "y"));
     if (c.x.size() == c.y.size() && !c.x.empty()) run.curves.emplace_back(text_of(row, {"sensor"}), c);
   }
 }
@@ -262,7 +269,8 @@ bool has_value(const std::vector<NamedValue>& values, const std::string& name) {
 
 RunFolder read_run_folder(const std::string& dir) {
   if (!fs::is_directory(dir)) {
-    throw Error(Fault::files, "cannot write a report: " + dir + " is not a folder; give the folder of a run (-o of calx run)");
+    throw Error(Fault::files,
+                "cannot write a report: " + dir + " is not a folder; give the folder of a run (-o of calx run)");
   }
   RunFolder run;
   run.dir = dir;

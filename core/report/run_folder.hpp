@@ -24,7 +24,7 @@ struct SensorSeries {
   std::vector<double> time;                 // s
   std::vector<std::vector<double>> values;  // one vector per column, NaN where the file has none
   std::vector<NamedValue> last;
-  std::string missing;                      // why there are no rows; empty when there are
+  std::string missing;  // why there are no rows; empty when there are
   /// Number of a column; -1 when there is none of that name.
   int column(const std::string& column_name) const;
 };
@@ -49,8 +49,8 @@ struct DeviationRow {
 struct RunFolder {
   std::string dir, title, status;
   bool has_summary = false;
-  double time = 0, time_end = 0;             // s; time_end 0: not stated
-  double steps = -1, particles = -1;         // negative: not stated
+  double time = 0, time_end = 0;      // s; time_end 0: not stated
+  double steps = -1, particles = -1;  // negative: not stated
   double wall_seconds = -1, particle_steps_per_second = -1, time_step = -1;
   std::vector<NamedValue> mass, energy;
   std::vector<SensorSeries> sensors;
@@ -59,13 +59,13 @@ struct RunFolder {
   std::vector<PluginRow> plugins;
   std::vector<std::string> assumptions;
   std::vector<DeviationRow> deviations;
-  std::vector<NamedValue> events;            // name, time s
-  std::string case_text;                     // case.json, indented
+  std::vector<NamedValue> events;  // name, time s
+  std::string case_text;           // case.json, indented
   Vec3 gravity{0, 0, -9.81};
   std::vector<std::pair<std::string, FieldResult>> fields;  // sensor name, field
   std::vector<std::pair<std::string, CurveResult>> curves;  // sensor name, curve
   FrameSet frames;
-  std::vector<std::string> notes;            // files that are absent or could not be read, and what is missing for it
+  std::vector<std::string> notes;  // files that are absent or could not be read, and what is missing for it
 
   /// First sensor of that kind; null when there is none.
   const SensorSeries* sensor_of(const std::string& kind) const;

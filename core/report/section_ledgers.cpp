@@ -12,9 +12,12 @@ struct EnergyTerm {
   const char *column, *name;
 };
 // What the energy brought in has become. Gravity energy stands on an arbitrary zero, so its change is drawn.
-const EnergyTerm energy_terms[] = {{"gravity_J", "gravity (change)"}, {"kinetic_translation_J", "kinetic, translation"},
-                                   {"kinetic_rotation_J", "kinetic, rotation"}, {"elastic_J", "elastic"},
-                                   {"friction_J", "lost in friction"}, {"damping_J", "lost in damping"},
+const EnergyTerm energy_terms[] = {{"gravity_J", "gravity (change)"},
+                                   {"kinetic_translation_J", "kinetic, translation"},
+                                   {"kinetic_rotation_J", "kinetic, rotation"},
+                                   {"elastic_J", "elastic"},
+                                   {"friction_J", "lost in friction"},
+                                   {"damping_J", "lost in damping"},
                                    {"plastic_J", "plastic work"}};
 
 double largest(const std::vector<double>& values) {
@@ -43,7 +46,8 @@ std::string energy_charts(Page& page, const SensorSeries& s, const std::vector<C
     terms.push_back(v);
     names.push_back(term.name);
   }
-  if (terms.empty()) return html_absent("Sensor " + s.name + ": no energy in its rows; the run keeps no energy ledger.");
+  if (terms.empty())
+    return html_absent("Sensor " + s.name + ": no energy in its rows; the run keeps no energy ledger.");
   const DisplayUnit unit = display_unit("J", high);
   Chart stack;
   stack.kind = Chart::Kind::stack;
@@ -56,7 +60,8 @@ std::string energy_charts(Page& page, const SensorSeries& s, const std::vector<C
     stack.series.push_back({ChartSeries::Style::area, names[k], s.time, terms[k], {}, static_cast<int>(k)});
   }
   stack.marks = marks;
-  stack.caption = "What the energy of the grains has become; losses add up over the run, gravity is counted from the first row.";
+  stack.caption =
+      "What the energy of the grains has become; losses add up over the run, gravity is counted from the first row.";
   std::string out = page.chart(stack);
 
   const int k = s.column("remainder_J"), work = s.column("work_done_J");
@@ -101,7 +106,8 @@ std::string ledger_table(const SensorSeries& s) {
     if (end == std::string::npos || end + 3 != column.size()) continue;
     const std::string name = column.substr(0, end);
     const double count = last_value(s, name + "_1"), mass = last_value(s, column);
-    rows.push_back({html_text(words(name)), std::isfinite(count) ? format_count(count) : "", format_quantity(mass, "kg", 5)});
+    rows.push_back(
+        {html_text(words(name)), std::isfinite(count) ? format_count(count) : "", format_quantity(mass, "kg", 5)});
   }
   const double imbalance = last_value(s, "imbalance_1");
   if (std::isfinite(imbalance)) rows.push_back({"<b>imbalance</b>", "<b>" + format_count(imbalance) + "</b>", ""});
@@ -109,8 +115,13 @@ std::string ledger_table(const SensorSeries& s) {
 }
 
 // summary.json's ledger: "inserted" with "inserted_count" beside it.
-std::string ledger_table(const std::vector<NamedValue>& mass) {
+std::string ledger_table(std::vector<NamedValue> mass) {
   std::vector<std::vector<std::string>> rows = {{"Where", "Particles", "Mass"}};
+  // In the order of a balance: what was asked for, what came, where it is, what left; then everything else.
+  const std::vector<std::string> order = {"requested", "delivered", "inserted", "inside", "removed", "left", "lost"};
+  const auto rank = [&](const NamedValue& v) { return std::find(order.begin(), order.end(), v.name) - order.begin(); };
+  std::stable_sort(mass.begin(), mass.end(),
+                   [&](const NamedValue& a, const NamedValue& b) { return rank(a) < rank(b); });
   for (const NamedValue& v : mass) {
     const std::size_t end = v.name.rfind("count");
     const bool is_count = end != std::string::npos && end > 0 && end + 5 == v.name.size();
@@ -119,7 +130,8 @@ std::string ledger_table(const std::vector<NamedValue>& mass) {
     if (!std::isfinite(count)) count = value_of(mass, v.name + " count", std::nan(""));
     std::string name = v.name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    rows.push_back({html_text(name), std::isfinite(count) ? format_count(count) : "", format_quantity(v.value, "kg", 5)});
+    rows.push_back(
+        {html_text(name), std::isfinite(count) ? format_count(count) : "", format_quantity(v.value, "kg", 5)});
   }
   return rows.size() > 1 ? html_table(rows, 1) : "";
 }
@@ -132,21 +144,34 @@ void Sections::ledgers() {
   if (energy && !energy->time.empty()) {
     drawn.insert(energy->name);
     charts += energy_charts(page, *energy, event_marks());
-    charts += sensor_charts(*energy, {"kinetic_translation_J", "kinetic_rotation_J", "gravity_J", "elastic_J", "friction_J",
-                                      "damping_J", "plastic_J", "remainder_J", "remainder_share_1"});
+    charts += sensor_charts(*energy, {"kinetic_translation_J", "kinetic_rotation_J", "gravity_J", "elastic_J",
+                                      "friction_J", "damping_J", "plastic_J", "remainder_J", "remainder_share_1"});
   } else {
     charts += html_absent(energy ? "No energy ledger: " + energy->missing + "."
                                  : "No energy ledger: the case has no sensor of kind energy.");
   }
+  const SensorSeries* mass = run.sensor_of("mass-ledger");
+  if (mass && !mass->time.empty()) {
+    // Counts tell the same as masses, but for the imbalance, which is exact.
+    std::set<std::string> counts;
+    for (const std::string& column : mass->columns) {
+      if (quantity_of(column).unit.empty() && column != "imbalance_1") counts.insert(column);
+    }
+    charts += sensor_charts(*mass, counts);
+  }
   std::string tables;
   const std::string summary = ledger_table(run.mass);
-  if (!summary.empty()) tables += "<div class=\"box\"><h3>Mass ledger of the run</h3>" + summary + "<p>" + html_text(figures.ledger_text) + "</p></div>";
-  const SensorSeries* mass = run.sensor_of("mass-ledger");
+  if (!summary.empty())
+    tables += "<div class=\"box\"><h3>Mass ledger of the run</h3>" + summary + "<p>" + html_text(figures.ledger_text) +
+              "</p></div>";
   if (mass) {
     const std::string table = ledger_table(*mass);
-    if (!table.empty()) tables += "<div class=\"box\"><h3>Mass ledger by region</h3>" + table + "<p>Last row of sensor " + html_text(mass->name) + ".</p></div>";
+    if (!table.empty())
+      tables += "<div class=\"box\"><h3>Mass ledger by region</h3>" + table + "<p>Last row of sensor " +
+                html_text(mass->name) + ".</p></div>";
   }
-  if (tables.empty()) tables = html_absent("No mass ledger: summary.json holds none and the case has no sensor of kind mass-ledger.");
+  if (tables.empty())
+    tables = html_absent("No mass ledger: summary.json holds none and the case has no sensor of kind mass-ledger.");
   page.section("ledgers", "Energy and mass ledgers", "Ledgers",
                "<div class=\"charts\">" + charts + "</div><div class=\"two\">" + tables + "</div>");
 }

@@ -9,8 +9,8 @@ namespace calx {
 namespace {
 
 std::string card(const std::string& name, const std::string& value, const std::string& note, const char* mood = "") {
-  return "<div class=\"card " + std::string(mood) + "\"><span class=\"name\">" + name + "</span><span class=\"value\">" + value +
-         "</span><span class=\"note\">" + note + "</span></div>";
+  return "<div class=\"card " + std::string(mood) + "\"><span class=\"name\">" + name +
+         "</span><span class=\"value\">" + value + "</span><span class=\"note\">" + note + "</span></div>";
 }
 
 std::string status_class(const std::string& status) {
@@ -60,24 +60,30 @@ void Sections::header() {
     out += card("mass per cycle, mean", format_quantity(c.per_cycle.mean, "kg", 4), note, "main");
   }
   if (run.has_summary) {
-    out += card("simulated time", format_quantity(run.time, "s", 4), run.steps >= 0 ? format_count(run.steps) + " steps" : "");
+    out += card("simulated time", format_quantity(run.time, "s", 4),
+                run.steps >= 0 ? format_count(run.steps) + " steps" : "");
   }
   if (run.particles >= 0) out += card("particles", format_count(run.particles), "in the world now");
   if (run.time_step > 0) out += card("time step", format_quantity(run.time_step, "s", 4), "");
   if (run.particle_steps_per_second > 0) {
-    out += card("speed", format_number(run.particle_steps_per_second / 1e6, 3) + " M",
-                "particle steps per second" + (run.wall_seconds > 0 ? "; wall time " + wall_text(run.wall_seconds) : ""));
+    out +=
+        card("speed", format_number(run.particle_steps_per_second / 1e6, 3) + " M",
+             "particle steps per second" + (run.wall_seconds > 0 ? "; wall time " + wall_text(run.wall_seconds) : ""));
   }
   if (std::isfinite(figures.energy_remainder)) {
     const double share = figures.energy_work > 0 ? std::fabs(figures.energy_remainder) / figures.energy_work : 0;
-    out += card("energy remainder", percent(share), format_quantity(figures.energy_remainder, "J", 3) + " of " +
-                format_quantity(figures.energy_work, "J", 3) + " work done", share > 0.05 ? "bad" : "");
+    out += card("energy remainder", percent(share),
+                format_quantity(figures.energy_remainder, "J", 3) + " of " +
+                    format_quantity(figures.energy_work, "J", 3) + " work done",
+                share > 0.05 ? "bad" : "");
   }
   const char* closed = figures.ledger == KeyFigures::Closed::yes  ? "yes"
                        : figures.ledger == KeyFigures::Closed::no ? "no"
                                                                   : "not stated";
   out += card("mass ledger closed", closed, html_text(figures.ledger_text),
-              figures.ledger == KeyFigures::Closed::yes ? "good" : figures.ledger == KeyFigures::Closed::no ? "bad" : "");
+              figures.ledger == KeyFigures::Closed::yes  ? "good"
+              : figures.ledger == KeyFigures::Closed::no ? "bad"
+                                                         : "");
   page.header(out + "</div>");
 }
 
@@ -93,31 +99,42 @@ void Sections::overview() {
   if (std::isfinite(figures.energy_remainder) && figures.energy_work > 0) {
     const double share = std::fabs(figures.energy_remainder) / figures.energy_work;
     // 1 % and 5 %: house rule for "converged in time" and "look at the time step"; the number itself is what counts.
-    checks += row(share <= 0.01 ? "good" : share <= 0.05 ? "open" : "bad", "Energy remainder " + percent(share) + " of the work done.",
-                  share <= 0.05 ? "What time integration lost or gained." : "The time step is too large for this stiffness, or the run blew up.");
+    checks += row(share <= 0.01   ? "good"
+                  : share <= 0.05 ? "open"
+                                  : "bad",
+                  "Energy remainder " + percent(share) + " of the work done.",
+                  share <= 0.05 ? "What time integration lost or gained."
+                                : "The time step is too large for this stiffness, or the run blew up.");
   } else {
     checks += row("open", "Energy not checked.", "Add a sensor of kind energy to see what time integration loses.");
   }
   const double requested = value_of(run.mass, "requested", 0), delivered = value_of(run.mass, "delivered", 0);
   if (requested > 0) {
     const bool full = delivered >= 0.999 * requested;
-    checks += row(full ? "good" : "open", "Sources delivered " + format_quantity(delivered, "kg", 4) + " of " + format_quantity(requested, "kg", 4) + ".",
-                  full ? "" : "A source had no room, or the run ended before it was done.");
+    checks += row(
+        full ? "good" : "open",
+        "Sources delivered " + format_quantity(delivered, "kg", 4) + " of " + format_quantity(requested, "kg", 4) + ".",
+        full ? "" : "A source had no room, or the run ended before it was done.");
   }
   for (const StepLimitRow& l : run.limits) {
     if (!l.binds || !(run.time_step > 0) || !(l.seconds > 0)) continue;
     const bool below = run.time_step <= l.seconds * (1 + 1e-9);
-    checks += row(below ? "good" : "bad", "Time step " + format_quantity(run.time_step, "s", 4) + (below ? " is within" : " is above") + " the binding limit.",
-                  html_text(l.name) + ", " + format_quantity(l.seconds, "s", 4) + (l.where.empty() ? "" : " (" + html_text(l.where) + ")") + ".");
+    checks += row(below ? "good" : "bad",
+                  "Time step " + format_quantity(run.time_step, "s", 4) + (below ? " is within" : " is above") +
+                      " the binding limit.",
+                  html_text(l.name) + ", " + format_quantity(l.seconds, "s", 4) +
+                      (l.where.empty() ? "" : " (" + html_text(l.where) + ")") + ".");
   }
   for (const std::string& n : run.notes) checks += row("open", "Not complete:", html_text(n) + ".");
   checks += "</ul>";
 
   std::string assumed = run.assumptions.empty() ? html_absent("The case lists no assumptions.")
-      : "<p>Not measured or not known; chosen for this run. Agreement reached by choosing them is calibration, not validation.</p>" +
-        list(run.assumptions);
-  std::string out = "<div class=\"two\"><div class=\"box\"><h3>Checks</h3>" + checks + "</div><div class=\"box assumed\"><h3>Assumptions (" +
-                    std::to_string(run.assumptions.size()) + ")</h3>" + assumed + "</div></div>";
+                                                : "<p>Not measured or not known; chosen for this run. Agreement "
+                                                  "reached by choosing them is calibration, not validation.</p>" +
+                                                      list(run.assumptions);
+  std::string out = "<div class=\"two\"><div class=\"box\"><h3>Checks</h3>" + checks +
+                    "</div><div class=\"box assumed\"><h3>Assumptions (" + std::to_string(run.assumptions.size()) +
+                    ")</h3>" + assumed + "</div></div>";
   if (!run.deviations.empty()) {
     std::vector<std::vector<std::string>> rows = {{"Figure", "Source", "This run", "Reference", "Difference"}};
     std::vector<std::string> sentences;
@@ -126,10 +143,12 @@ void Sections::overview() {
         sentences.push_back(d.text);
         continue;
       }
-      rows.push_back({html_text(d.text), html_text(d.source), format_quantity(d.value, d.unit, 5), format_quantity(d.reference, d.unit, 5),
+      rows.push_back({html_text(d.text), html_text(d.source), format_quantity(d.value, d.unit, 5),
+                      format_quantity(d.reference, d.unit, 5),
                       std::fabs(d.reference) > 0 ? percent((d.value - d.reference) / std::fabs(d.reference)) : "-"});
     }
-    out += "<h3>Deviations</h3>" + (rows.size() > 1 ? html_table(rows, 2) : "") + (sentences.empty() ? "" : list(sentences));
+    out += "<h3>Deviations</h3>" + (rows.size() > 1 ? html_table(rows, 2) : "") +
+           (sentences.empty() ? "" : list(sentences));
   }
   page.section("trust", "Can I believe this run?", "Checks", out);
 }

@@ -40,7 +40,8 @@ Vec3 vertex(const PartMesh& part, std::uint32_t number, const FrameData::PartPos
   return rotate(pose.turn, Vec3{v[0], v[1], v[2]}) + pose.shift;
 }
 
-void cut(const PartMesh& part, const FrameData::PartPose& pose, const Axes& axes, double plane, std::vector<Line>& lines) {
+void cut(const PartMesh& part, const FrameData::PartPose& pose, const Axes& axes, double plane,
+         std::vector<Line>& lines) {
   for (std::size_t t = 0; t + 2 < part.triangles.size(); t += 3) {
     double ends[6];
     int found = 0;
@@ -61,7 +62,9 @@ void cut(const PartMesh& part, const FrameData::PartPose& pose, const Axes& axes
 
 struct Extent {
   double x0 = 1e300, x1 = -1e300, y0 = 1e300, y1 = -1e300;
-  void add(double x, double y) { x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y); }
+  void add(double x, double y) {
+    x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+  }
 };
 
 std::string number(double v) {
@@ -80,21 +83,22 @@ std::string scale_bar(double width_m, double pixels_per_m, double x, double y) {
     }
   }
   const double w = length * pixels_per_m;
-  return "<path d=\"M" + number(x) + " " + number(y - 4) + "v8m0 -4h" + number(w) + "m0 -4v8\" stroke=\"#444\" fill=\"none\"/>" +
-         "<text x=\"" + number(x + w / 2) + "\" y=\"" + number(y - 7) + "\" text-anchor=\"middle\">" +
-         format_quantity(length, "m", 3) + "</text>";
+  return "<path d=\"M" + number(x) + " " + number(y - 4) + "v8m0 -4h" + number(w) +
+         "m0 -4v8\" stroke=\"#444\" fill=\"none\"/>" + "<text x=\"" + number(x + w / 2) + "\" y=\"" + number(y - 7) +
+         "\" text-anchor=\"middle\">" + format_quantity(length, "m", 3) + "</text>";
 }
 
 }  // namespace
 
 std::string speed_colour(double share) {
-  static const double anchors[6][3] = {{44, 66, 117}, {33, 120, 160}, {60, 166, 150}, {158, 205, 110}, {246, 200, 72},
-                                       {214, 69, 45}};
+  static const double anchors[6][3] = {{116, 142, 184}, {52, 136, 178}, {64, 172, 142},
+                                       {166, 206, 96},  {247, 192, 66}, {212, 62, 42}};
   const double at = 5 * std::min(1.0, std::max(0.0, share));
   const int k = std::min(4, static_cast<int>(at));
   char text[8];
   int rgb[3];
-  for (int c = 0; c < 3; ++c) rgb[c] = static_cast<int>(std::lround(anchors[k][c] + (at - k) * (anchors[k + 1][c] - anchors[k][c])));
+  for (int c = 0; c < 3; ++c)
+    rgb[c] = static_cast<int>(std::lround(anchors[k][c] + (at - k) * (anchors[k + 1][c] - anchors[k][c])));
   std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0] & 255, rgb[1] & 255, rgb[2] & 255);
   return text;
 }
@@ -145,13 +149,14 @@ SectionPicture draw_section(const FrameSet& set, const FrameData& frame, const V
   const auto py = [&](double y) { return margin + (extent.y1 - y) * scale; };
 
   out.svg = "<svg class=\"section-picture\" viewBox=\"0 0 " + number(width) + " " + number(height) + "\" width=\"" +
-            number(width) + "\" role=\"img\" aria-label=\"Section through the apparatus\"><g stroke=\"#20304a\" "
+            number(width) +
+            "\" role=\"img\" aria-label=\"Section through the apparatus\"><g stroke=\"#20304a\" "
             "stroke-opacity=\"0.35\" stroke-width=\"0.4\">";
   for (std::size_t i : shown) {
     const Vec3 c{frame.x[i], frame.y[i], frame.z[i]};
     const double part = highest_speed > 0 ? std::sqrt(frame.speed[i] / highest_speed) : 0;
-    out.svg += "<circle cx=\"" + number(px(c[axes.right])) + "\" cy=\"" + number(py(axes.up_sign * c[axes.up])) + "\" r=\"" +
-               number(std::max(0.4, frame.radius[i] * scale)) + "\" fill=\"" + speed_colour(part) + "\"/>";
+    out.svg += "<circle cx=\"" + number(px(c[axes.right])) + "\" cy=\"" + number(py(axes.up_sign * c[axes.up])) +
+               "\" r=\"" + number(std::max(0.4, frame.radius[i] * scale)) + "\" fill=\"" + speed_colour(part) + "\"/>";
   }
   out.svg += "</g><path fill=\"none\" stroke=\"#1d2733\" stroke-width=\"1.4\" stroke-linecap=\"round\" d=\"";
   for (const Line& l : lines) {

@@ -14,8 +14,9 @@ std::string speed_bar(double highest) {
   std::string stops;
   for (int k = 0; k <= 10; ++k) stops += (k > 0 ? "," : "") + speed_colour(k / 10.0);
   // The scale goes with the square root of the speed, so the middle of the bar is a quarter of the highest speed.
-  return "<div class=\"speed-bar\"><i style=\"background:linear-gradient(90deg," + stops + ")\"></i><span>0</span><span>" +
-         format_number(highest / 4, 3) + "</span><span>" + format_number(highest, 3) + " m/s</span></div>";
+  return "<div class=\"speed-bar\"><i style=\"background:linear-gradient(90deg," + stops +
+         ")\"></i><span>0</span><span>" + format_number(highest / 4, 3) + "</span><span>" + format_number(highest, 3) +
+         " m/s</span></div>";
 }
 
 const char* const playback_html = R"(<div id="viewer" class="viewer"><div class="stage"><canvas></canvas>
@@ -43,7 +44,9 @@ const char* const playback_html = R"(<div id="viewer" class="viewer"><div class=
 void Sections::pictures() {
   const std::size_t count = run.frames.times.size();
   if (count == 0) {
-    page.section("pictures", "Pictures", "Pictures", html_absent("No pictures: particles.h5 is not there, or holds no frame. Set output/frames_every in the case."));
+    page.section(
+        "pictures", "Pictures", "Pictures",
+        html_absent("No pictures: particles.h5 is not there, or holds no frame. Set output/frames_every in the case."));
     return;
   }
   std::string out;
@@ -63,12 +66,13 @@ void Sections::pictures() {
     for (std::size_t number : spaced_frames(count, 3)) {
       const SectionPicture picture = draw_section(run.frames, read_frame(run.dir, number), run.gravity, highest);
       if (picture.svg.empty()) continue;
-      sections += "<figure>" + picture.svg + "<figcaption>t = " + format_quantity(run.frames.times[number], "s", 4) + ", " +
-                  format_count(static_cast<double>(picture.spheres)) + " spheres</figcaption></figure>";
+      sections += "<figure>" + picture.svg + "<figcaption>t = " + format_quantity(run.frames.times[number], "s", 4) +
+                  ", " + format_count(static_cast<double>(picture.spheres)) + " spheres</figcaption></figure>";
     }
     if (!sections.empty()) {
       out += "<h3>Section</h3><div class=\"stills\">" + sections + "</div>" + speed_bar(highest) +
-             "<p class=\"note\">Spheres up to one diameter behind the plane through the middle of the apparatus, coloured by speed; lines: "
+             "<p class=\"note\">Spheres up to one diameter behind the plane through the middle of the apparatus, "
+             "coloured by speed; lines: "
              "the parts where the plane cuts them.</p>";
     }
   } catch (const Error& e) {

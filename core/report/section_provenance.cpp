@@ -14,7 +14,8 @@ void Sections::time_step() {
   } else {
     double longest = 0, shortest = 1e300;
     for (const StepLimitRow& l : run.limits) {
-      if (l.seconds > 0 && std::isfinite(l.seconds)) longest = std::max(longest, l.seconds), shortest = std::min(shortest, l.seconds);
+      if (l.seconds > 0 && std::isfinite(l.seconds))
+        longest = std::max(longest, l.seconds), shortest = std::min(shortest, l.seconds);
     }
     if (run.time_step > 0) shortest = std::min(shortest, run.time_step);
     // Bars on a logarithmic scale from a third of the shortest to the longest: limits differ by powers of ten.
@@ -22,7 +23,8 @@ void Sections::time_step() {
     const auto bar = [&](double seconds, const char* css) {
       if (!(seconds > 0) || !(high > low)) return std::string();
       const double share = 100 * std::min(1.0, std::max(0.01, (std::log(seconds) - low) / (high - low)));
-      return "<span class=\"bar " + std::string(css) + "\"><i style=\"width:" + format_number(share, 3) + "%\"></i></span>";
+      return "<span class=\"bar " + std::string(css) + "\"><i style=\"width:" + format_number(share, 3) +
+             "%\"></i></span>";
     };
     std::vector<std::vector<std::string>> rows = {{"Limit", "Where", "", "Seconds", "Step / limit"}};
     for (const StepLimitRow& l : run.limits) {
@@ -31,7 +33,8 @@ void Sections::time_step() {
                       bar(l.seconds, l.binds ? "binds" : ""), format_quantity(l.seconds, "s", 4),
                       run.time_step > 0 && l.seconds > 0 ? format_number(run.time_step / l.seconds, 3) : "-"});
     }
-    if (run.time_step > 0) rows.push_back({"step taken", "", bar(run.time_step, "taken"), format_quantity(run.time_step, "s", 4), ""});
+    if (run.time_step > 0)
+      rows.push_back({"step taken", "", bar(run.time_step, "taken"), format_quantity(run.time_step, "s", 4), ""});
     out = html_table(rows, 3, "limits") + "<p class=\"note\">Bars: logarithmic scale.</p>";
   }
   page.section("time-step", "Time-step limits", "Time step", out);
@@ -50,7 +53,8 @@ void Sections::provenance() {
   if (!run.plugins.empty()) {
     std::vector<std::vector<std::string>> plugins = {{"Plugin", "Version", "SHA-256", ""}};
     for (const PluginRow& p : run.plugins) {
-      plugins.push_back({html_text(p.id), html_text(p.version), "<code>" + html_text(p.hash) + "</code>", html_text(p.note)});
+      plugins.push_back(
+          {html_text(p.id), html_text(p.version), "<code>" + html_text(p.hash) + "</code>", html_text(p.note)});
     }
     out += html_table(plugins, 4);
   }
@@ -59,9 +63,10 @@ void Sections::provenance() {
 
 void Sections::case_text() {
   page.section("case", "The case", "Case",
-               run.case_text.empty() ? html_absent("No case: case.json is not there.")
-                                     : "<details><summary>case.json as resolved; running it again gives the same bits</summary><pre>" +
-                                           html_text(run.case_text) + "</pre></details>");
+               run.case_text.empty()
+                   ? html_absent("No case: case.json is not there.")
+                   : "<details><summary>case.json as resolved; running it again gives the same bits</summary><pre>" +
+                         html_text(run.case_text) + "</pre></details>");
 }
 
 }  // namespace calx

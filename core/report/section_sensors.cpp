@@ -34,6 +34,24 @@ Chart against_time(const std::string& title, const std::string& quantity, const 
   return chart;
 }
 
+// "centre x" and "centre z" have "centre" in common; "wall work" and "inserted" have nothing.
+std::string common_words(const std::string& a, const std::string& b) {
+  std::size_t same = 0;
+  while (same < a.size() && same < b.size() && a[same] == b[same]) ++same;
+  if (same == a.size() && (same == b.size() || b[same] == ' ')) return a;
+  if (same == b.size() && a[same] == ' ') return b;
+  const std::size_t blank = a.rfind(' ', same);
+  return blank == std::string::npos || blank > same ? "" : a.substr(0, blank);
+}
+
+std::string quantity_name(const std::string& unit) {
+  static const std::map<std::string, std::string> names = {
+      {"N", "force"},  {"N m", "torque"}, {"J", "energy"},  {"W", "power"},   {"kg", "mass"},     {"kg/s", "mass flow"},
+      {"m", "length"}, {"m/s", "speed"},  {"deg", "angle"}, {"rad", "angle"}, {"Pa", "pressure"}, {"s", "time"}};
+  const auto at = names.find(unit);
+  return at == names.end() ? "value" : at->second;
+}
+
 std::string sensor_caption(const SensorSeries& s) {
   return "Sensor " + html_text(s.name) + (s.kind.empty() ? "" : ", kind " + html_text(s.kind)) +
          (s.every > 0 ? ", every " + format_quantity(s.every, "s", 3) : "") + ".";
@@ -45,14 +63,16 @@ std::string cycle_charts(Page& page, const CycleFigures& c) {
   line.title = "Mass against cycle";
   line.x = {"cycle", "", true, {}};
   line.y = {"mass", total_unit.unit, true, {}};
-  line.series.push_back({ChartSeries::Style::points, "after each cycle", c.cycle, scaled(c.total, total_unit.factor), {}, 0});
+  line.series.push_back(
+      {ChartSeries::Style::points, "after each cycle", c.cycle, scaled(c.total, total_unit.factor), {}, 0});
   if (c.line.possible) {
     std::vector<double> ends = {0, c.cycle.back()}, at;
     for (double x : ends) at.push_back((c.line.intercept + c.line.slope * x) * total_unit.factor);
     line.series.push_back({ChartSeries::Style::dashed, "straight line", ends, at, {}, 1});
     line.caption = "Slope " + format_quantity(c.line.slope, "kg", 4) + " per cycle, intercept " +
-                   format_quantity(c.line.intercept, "kg", 3) + ", R<sup>2</sup> = " + format_number(c.line.r_squared, 6) +
-                   ", fitted to cycles " + format_number(c.first) + " to " + format_number(c.cycle.back()) + ".";
+                   format_quantity(c.line.intercept, "kg", 3) +
+                   ", R<sup>2</sup> = " + format_number(c.line.r_squared, 6) + ", fitted to cycles " +
+                   format_number(c.first) + " to " + format_number(c.cycle.back()) + ".";
   }
   Chart bars;
   bars.title = "Mass per cycle";
@@ -60,12 +80,28 @@ std::string cycle_charts(Page& page, const CycleFigures& c) {
   bars.y = {"mass per cycle", each_unit.unit, true, {}};
   bars.series.push_back({ChartSeries::Style::bars, "mass per cycle", c.cycle, scaled(c.each, each_unit.factor), {}, 0});
   if (c.per_cycle.count > 1) {
-    bars.bands.push_back({c.per_cycle.mean * each_unit.factor, c.per_cycle.deviation * each_unit.factor, "mean and sd"});
-    bars.caption = "Mean " + format_quantity(c.per_cycle.mean, "kg", 4) + ", sd " + format_quantity(c.per_cycle.deviation, "kg", 3) +
-                   " (" + format_number(100 * c.per_cycle.deviation / c.per_cycle.mean, 2) + "\xc2\xa0%) over " +
+    bars.bands.push_back(
+        {c.per_cycle.mean * each_unit.factor, c.per_cycle.deviation * each_unit.factor, "mean and sd"});
+    bars.caption = "Mean " + format_quantity(c.per_cycle.mean, "kg", 4) + ", sd " +
+                   format_quantity(c.per_cycle.deviation, "kg", 3) + " (" +
+                   format_number(100 * c.per_cycle.deviation / c.per_cycle.mean, 2) + "\xc2\xa0%) over " +
                    std::to_string(c.per_cycle.count) + " cycles, from cycle " + format_number(c.first) + " on.";
   }
-  return page.chart(line) + page.chart(bars);
+  std::string out = page.chart(line) + page.chart(bars);
+  if (c.per_cycle.count > 1) {
+    Chart scatter = bars;
+    scatter.title = "Scatter of the mass per cycle";
+    scatter.y.from_zero = false;
+    ChartSeries points{ChartSeries::Style::points, "mass per cycle", {}, {}, {}, 0};
+    for (std::size_t k = 0; k < c.cycle.size(); ++k) {
+      if (c.cycle[k] < c.first) continue;
+      points.x.push_back(c.cycle[k]), points.y.push_back(c.each[k] * each_unit.factor);
+    }
+    scatter.series = {points};
+    scatter.caption = "The same figures, axis not from zero. Line: mean; band: one standard deviation on either side.";
+    out += page.chart(scatter);
+  }
+  return out;
 }
 
 }  // namespace
@@ -100,13 +136,18 @@ std::string Sections::sensor_charts(const SensorSeries& s, const std::set<std::s
     for (std::size_t k : group) high = std::max(high, largest(s.values[k]));
     const DisplayUnit unit = display_unit(first.unit, high);
     std::string quantity = first.title;
-    if (group.size() > 1) quantity = first.unit == "N" ? "force" : first.unit == "N m" ? "torque" : first.unit == "J" ? "energy"
-        : first.unit == "kg" ? "mass" : first.unit == "m" ? "length" : first.unit == "deg" ? "angle" : first.title;
-    Chart chart = against_time(s.name + ": " + quantity, quantity, unit.unit);
+    for (std::size_t k : group) quantity = common_words(quantity, quantity_of(s.columns[k]).title);
+    if (quantity.empty()) quantity = quantity_name(first.unit);
+    Chart chart = against_time(quantity == s.name ? s.name : s.name + ": " + quantity, quantity, unit.unit);
     bool empty = true;
     for (std::size_t k : group) {
       for (double v : s.values[k]) empty = empty && !std::isfinite(v);
-      chart.series.push_back({ChartSeries::Style::line, quantity_of(s.columns[k]).title, s.time, scaled(s.values[k], unit.factor), {}, -1});
+      chart.series.push_back({ChartSeries::Style::line,
+                              quantity_of(s.columns[k]).title,
+                              s.time,
+                              scaled(s.values[k], unit.factor),
+                              {},
+                              -1});
     }
     chart.caption = sensor_caption(s);
     if (empty) chart.caption += " No value yet: every row of this column is empty.";
@@ -123,7 +164,8 @@ void Sections::dosing() {
     Chart chart = against_time(figures.fill->name + " against time", "mass", unit.unit);
     chart.wide = true;
     chart.y.from_zero = true;
-    chart.series.push_back({ChartSeries::Style::area, figures.fill->name, figures.fill->time, scaled(mass, unit.factor), {}, 0});
+    chart.series.push_back(
+        {ChartSeries::Style::area, figures.fill->name, figures.fill->time, scaled(mass, unit.factor), {}, 0});
     chart.marks = event_marks();
     chart.caption = sensor_caption(*figures.fill) + (chart.marks.empty() ? "" : " Dashed: events of the case.");
     out += page.chart(chart);
@@ -135,14 +177,18 @@ void Sections::dosing() {
     out += cycle_charts(page, figures.cycles);
   } else {
     const SensorSeries* s = run.sensor_of("cycle-mass");
-    out += html_absent(!s ? "No masses per cycle: the case has no sensor of kind cycle-mass."
-                          : s->time.empty() ? "No masses per cycle: " + s->missing + "." : "No cycle is completed yet.");
+    out += html_absent(!s                ? "No masses per cycle: the case has no sensor of kind cycle-mass."
+                       : s->time.empty() ? "No masses per cycle: " + s->missing + "."
+                                         : "No cycle is completed yet.");
   }
   if (const SensorSeries* s = run.sensor_of("cycle-mass")) drawn.insert(s->name);
   for (const SensorSeries& s : run.sensors) {
     if (s.kind == "flow") out += sensor_charts(s, {"particles_1"});
   }
-  page.section("dosing", "Dosing", "Dosing", grid(out));
+  page.section(
+      "dosing", "Dosing", "Dosing",
+      "<p class=\"note screen\">Drag across a chart to enlarge that stretch; a double click shows all of it.</p>" +
+          grid(out));
 }
 
 void Sections::pile() {
@@ -158,9 +204,11 @@ void Sections::pile() {
     map.value = {field.name, unit.unit, false, {}};
     map.equal_scales = true;
     map.nx = field.nx, map.ny = field.ny;
-    map.x0 = field.origin.x * length.factor, map.y0 = field.origin.y * length.factor, map.cell = field.cell * length.factor;
+    map.x0 = field.origin.x * length.factor, map.y0 = field.origin.y * length.factor,
+    map.cell = field.cell * length.factor;
     map.values = scaled(field.values, unit.factor);
-    map.caption = "At the end of the run, cells of " + format_quantity(field.cell, "m", 3) + "; empty where nothing lies.";
+    map.caption =
+        "At the end of the run, cells of " + format_quantity(field.cell, "m", 3) + "; empty where nothing lies.";
     out += page.chart(map);
   }
   for (const auto& [sensor, curve] : run.curves) {
@@ -177,8 +225,12 @@ void Sections::pile() {
     chart.x = {x.title, ux.unit, false, {}};
     chart.y = {y.title, uy.unit, lengths, {}};
     chart.equal_scales = lengths;
-    chart.series.push_back({lengths ? ChartSeries::Style::area : ChartSeries::Style::line, curve.name, scaled(curve.x, ux.factor),
-                            scaled(curve.y, uy.factor), {}, lengths ? 2 : 0});
+    chart.series.push_back({lengths ? ChartSeries::Style::area : ChartSeries::Style::line,
+                            curve.name,
+                            scaled(curve.x, ux.factor),
+                            scaled(curve.y, uy.factor),
+                            {},
+                            lengths ? 2 : 0});
     if (lengths) chart.caption = "Both axes have the same scale: angles are true.";
     out += page.chart(chart);
   }
@@ -189,13 +241,15 @@ void Sections::pile() {
     chart.x = {"side", "", false, {"left", "all", "right"}};
     chart.y = {"angle", "deg", false, {}};
     ChartSeries points{ChartSeries::Style::points, "angle", {}, {}, {}, 0};
-    const char* const names[3][2] = {{"left_deg", "left_sd_deg"}, {"angle_deg", "sd_deg"}, {"right_deg", "right_sd_deg"}};
+    const char* const names[3][2] = {
+        {"left_deg", "left_sd_deg"}, {"angle_deg", "sd_deg"}, {"right_deg", "right_sd_deg"}};
     for (int k = 0; k < 3; ++k) {
       const double angle = last_value(s, names[k][0]), sd = last_value(s, names[k][1]);
       if (!std::isfinite(angle)) continue;
       points.x.push_back(k), points.y.push_back(angle), points.error.push_back(std::isfinite(sd) ? sd : 0);
-      chart.caption += (chart.caption.empty() ? "" : ", ") + chart.x.categories[static_cast<std::size_t>(k)] + " " + format_number(angle, 3) +
-                       (std::isfinite(sd) ? " \xc2\xb1 " + format_number(sd, 2) : "") + "\xc2\xb0";
+      chart.caption += (chart.caption.empty() ? "" : ", ") + chart.x.categories[static_cast<std::size_t>(k)] + " " +
+                       format_number(angle, 3) + (std::isfinite(sd) ? " \xc2\xb1 " + format_number(sd, 2) : "") +
+                       "\xc2\xb0";
     }
     if (points.x.empty()) {
       out += html_absent("Sensor " + s.name + " found no flank that gives an angle of repose.");
@@ -204,10 +258,11 @@ void Sections::pile() {
       chart.series.push_back(points);
       out += page.chart(chart);
     }
-    out += sensor_charts(s, {"sectors_1", "bins_1"});
+    out += sensor_charts(s, {"sectors_1", "bins_1", "sd_deg", "left_sd_deg", "right_sd_deg"});
   }
   if (out.empty()) {
-    out = html_absent("No pile: the case has no sensor of kind height-map or angle-of-repose, or none has given a result yet.");
+    out = html_absent(
+        "No pile: the case has no sensor of kind height-map or angle-of-repose, or none has given a result yet.");
   }
   page.section("pile", "Pile", "Pile", grid(out));
 }

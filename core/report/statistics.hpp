@@ -17,7 +17,7 @@ Spread spread_of(const std::vector<double>& values);
 struct LinearFit {
   bool possible = false;  // needs two distinct x
   double slope = 0, intercept = 0;
-  double r_squared = 1;   // share of the variance of y explained; 1 when y does not vary
+  double r_squared = 1;  // share of the variance of y explained; 1 when y does not vary
 };
 LinearFit fit_line(const std::vector<double>& x, const std::vector<double>& y);
 

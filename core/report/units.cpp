@@ -13,12 +13,35 @@ struct Suffix {
 };
 // Longest first, so that "kg_m3" is not read as a "m3".
 const std::vector<Suffix>& suffixes() {
-  static const std::vector<Suffix> table = {
-      {"_kg_m2_s", "kg/(m2 s)"}, {"_rad_s", "rad/s"}, {"_kg_m3", "kg/m3"}, {"_kg_s", "kg/s"}, {"_m_s2", "m/s2"},
-      {"_1_s", "1/s"}, {"_m_s", "m/s"}, {"_N_m", "N m"}, {"_Nm", "N m"}, {"_N_s", "N s"}, {"_deg_s", "deg/s"},
-      {"_percent", "%"}, {"_deg", "deg"}, {"_rad", "rad"}, {"_kPa", "kPa"}, {"_Pa", "Pa"}, {"_m3", "m3"}, {"_m2", "m2"},
-      {"_mm", "mm"}, {"_kg", "kg"}, {"_Hz", "Hz"}, {"_g", "g"}, {"_m", "m"}, {"_s", "s"}, {"_N", "N"}, {"_J", "J"},
-      {"_W", "W"}, {"_K", "K"}, {"_1", ""}};
+  static const std::vector<Suffix> table = {{"_kg_m2_s", "kg/(m2 s)"},
+                                            {"_rad_s", "rad/s"},
+                                            {"_kg_m3", "kg/m3"},
+                                            {"_kg_s", "kg/s"},
+                                            {"_m_s2", "m/s2"},
+                                            {"_1_s", "1/s"},
+                                            {"_m_s", "m/s"},
+                                            {"_N_m", "N m"},
+                                            {"_Nm", "N m"},
+                                            {"_N_s", "N s"},
+                                            {"_deg_s", "deg/s"},
+                                            {"_percent", "%"},
+                                            {"_deg", "deg"},
+                                            {"_rad", "rad"},
+                                            {"_kPa", "kPa"},
+                                            {"_Pa", "Pa"},
+                                            {"_m3", "m3"},
+                                            {"_m2", "m2"},
+                                            {"_mm", "mm"},
+                                            {"_kg", "kg"},
+                                            {"_Hz", "Hz"},
+                                            {"_g", "g"},
+                                            {"_m", "m"},
+                                            {"_s", "s"},
+                                            {"_N", "N"},
+                                            {"_J", "J"},
+                                            {"_W", "W"},
+                                            {"_K", "K"},
+                                            {"_1", ""}};
   return table;
 }
 

@@ -79,31 +79,36 @@ void write_series(const std::string& dir, const SampleWorld& world, double every
   Csv mass(dir + "canister mass.csv", "time_s,mass_kg,particles_1,centre_x_m,centre_y_m,centre_z_m");
   Csv dose(dir + "dose.csv", "time_s,cycle_1,mass_kg,total_kg,mean_kg,sd_kg,slope_kg,intercept_kg,r2_1");
   Csv flow(dir + "nozzle flow.csv", "time_s,mass_kg,rate_kg_s,particles_1,forward_kg,backward_kg");
-  Csv load(dir + "rotor load.csv", "time_s,force_x_N,force_y_N,force_z_N,torque_x_N_m,torque_y_N_m,torque_z_N_m,power_W");
-  Csv energy(dir + "energy.csv",
-             "time_s,kinetic_translation_J,kinetic_rotation_J,gravity_J,elastic_J,friction_J,damping_J,plastic_J,wall_work_J,"
-             "force_work_J,inserted_J,removed_J,remainder_J,work_done_J,remainder_share_1");
+  Csv load(dir + "rotor load.csv",
+           "time_s,force_x_N,force_y_N,force_z_N,torque_x_N_m,torque_y_N_m,torque_z_N_m,power_W");
+  Csv energy(
+      dir + "energy.csv",
+      "time_s,kinetic_translation_J,kinetic_rotation_J,gravity_J,elastic_J,friction_J,damping_J,plastic_J,wall_work_J,"
+      "force_work_J,inserted_J,removed_J,remainder_J,work_done_J,remainder_share_1");
   Csv ledger(dir + "ledger.csv",
              "time_s,inserted_1,inserted_kg,inside_1,inside_kg,lost_1,lost_kg,in_hopper_1,in_hopper_kg,in_canister_1,"
              "in_canister_kg,elsewhere_1,elsewhere_kg,requested_kg,delivered_kg,imbalance_1");
   Csv pile(dir + "pile.csv",
-           "time_s,angle_deg,sd_deg,left_deg,left_sd_deg,right_deg,right_sd_deg,sectors_1,bins_1,apex_x_m,apex_y_m,apex_z_m");
-  Csv contacts(dir + "contacts _all_.csv", "time_s,coordination_1,coordination_carrying_1,rattlers_1,contacts_1,overlap_mean_1,overlap_max_1");
+           "time_s,angle_deg,sd_deg,left_deg,left_sd_deg,right_deg,right_sd_deg,sectors_1,bins_1,apex_x_m,apex_y_m,"
+           "apex_z_m");
+  Csv contacts(dir + "contacts _all_.csv",
+               "time_s,coordination_1,coordination_carrying_1,rattlers_1,contacts_1,overlap_mean_1,overlap_max_1");
   Csv residue(dir + "residue.csv", "time_s,mass_kg,particles_1");
   double before = 0, total = 0, cycle = 0, gained = 0;
   for (int k = 0; k * every < sample_end; ++k) {
     const double t = k * every, m = world.canister_mass(t), done = m / sample_mass;
     const bool turning = t > sample_start && t < sample_start + sample_cycles * sample_period;
     const double speed = turning ? std::fabs(world.rotor_angle(t + 1e-3) - world.rotor_angle(t)) / 1e-3 : 0;
-    mass.row({t, m, std::round(6000 * done), m > 0 ? -0.012 * done : nan, m > 0 ? 0.0005 * noise() : nan, m > 0 ? 0.055 * done : nan});
-    load.row({t, 2 * noise(), 0.2 * noise(), -6 + noise(), 0.002 * noise(), speed > 0 ? 0.11 + 0.03 * noise() : 0.01 * noise(), 0.002 * noise(),
-              speed * 0.11});
+    mass.row({t, m, std::round(6000 * done), m > 0 ? -0.012 * done : nan, m > 0 ? 0.0005 * noise() : nan,
+              m > 0 ? 0.055 * done : nan});
+    load.row({t, 2 * noise(), 0.2 * noise(), -6 + noise(), 0.002 * noise(),
+              speed > 0 ? 0.11 + 0.03 * noise() : 0.01 * noise(), 0.002 * noise(), speed * 0.11});
     if (k % 5 == 0) {
       flow.row({t, m, (m - before) / (5 * every), 6000 * done, m, 0});
       before = m;
       const double falling = turning ? 0.05 + 0.01 * noise() : 0.002;
-      energy.row({t, falling, 0.1 * falling, 12 - 9.5 * done, 0.03, 5.2 * done, 3.1 * done, 1.25 * done, 0.4 * done, 0, 0, 0, 0.0184 * done,
-                  0.01 + 11.6 * done, 0.0016});
+      energy.row({t, falling, 0.1 * falling, 12 - 9.5 * done, 0.03, 5.2 * done, 3.1 * done, 1.25 * done, 0.4 * done, 0,
+                  0, 0, 0.0184 * done, 0.01 + 11.6 * done, 0.0016});
     }
     if (turning && t - sample_start >= (cycle + 1) * sample_period) {
       ++cycle;
@@ -112,7 +117,8 @@ void write_series(const std::string& dir, const SampleWorld& world, double every
     }
     if (k % 10 == 0) {
       dose.row({t, cycle, gained, total, nan, nan, nan, nan, nan});
-      contacts.row({t, 4.6 + 0.3 * done, 4.9 + 0.2 * done, 0.08, 21000 * (0.2 + done), 0.0031 + 0.0004 * noise(), 0.012 + 0.004 * noise()});
+      contacts.row({t, 4.6 + 0.3 * done, 4.9 + 0.2 * done, 0.08, 21000 * (0.2 + done), 0.0031 + 0.0004 * noise(),
+                    0.012 + 0.004 * noise()});
       residue.row({t, done > 0.9 ? 0.00521 : 0, done > 0.9 ? 236.0 : 0.0});
     }
     if (k % 50 == 0) {
@@ -121,8 +127,8 @@ void write_series(const std::string& dir, const SampleWorld& world, double every
     }
     if (k % 100 == 0) {
       const bool flank = done > 0.2;
-      pile.row({t, flank ? 39.6 + noise() : nan, 1.3, flank ? 38.4 + noise() : nan, 1.1, flank ? 41.2 + noise() : nan, 1.6, 8, 120, -0.03, 0,
-                0.115 * done});
+      pile.row({t, flank ? 39.6 + noise() : nan, 1.3, flank ? 38.4 + noise() : nan, 1.1, flank ? 41.2 + noise() : nan,
+                1.6, 8, 120, -0.03, 0, 0.115 * done});
     }
   }
 }
@@ -137,7 +143,8 @@ std::string fields_text() {
   const int n = 40;
   const double cell = 0.005;
   const auto height = [](double x, double y) {
-    return x * x + y * y > 0.01 ? std::nan("") : std::max(0.004, 0.117 - 0.84 * std::sqrt((x + 0.03) * (x + 0.03) + y * y));
+    return x * x + y * y > 0.01 ? std::nan("")
+                                : std::max(0.004, 0.117 - 0.84 * std::sqrt((x + 0.03) * (x + 0.03) + y * y));
   };
   std::string map, section_x, section_y, ring_x, ring_y;
   for (int j = 0; j < n; ++j) {
@@ -155,10 +162,13 @@ std::string fields_text() {
     ring_x += (k ? "," : "") + text_of(r);
     ring_y += (k ? "," : "") + text_of(0.5 * (height(r, 0) + height(-r, 0)));
   }
-  return "{\"fields\":[{\"sensor\":\"bed\",\"name\":\"height\",\"unit\":\"m\",\"nx\":40,\"ny\":40,\"origin\":[-0.1,-0.1,0],\"cell\":0.005,\"values\":[" +
-         map + "]}],\"curves\":[{\"sensor\":\"bed\",\"name\":\"section\",\"x_name\":\"x_m\",\"y_name\":\"height_m\",\"x\":[" + section_x + "],\"y\":[" +
-         section_y + "]},{\"sensor\":\"bed\",\"name\":\"azimuthal mean\",\"x_name\":\"radius_m\",\"y_name\":\"height_m\",\"x\":[" + ring_x +
-         "],\"y\":[" + ring_y + "]}]}";
+  return "{\"fields\":[{\"sensor\":\"bed\",\"name\":\"height\",\"unit\":\"m\",\"nx\":40,\"ny\":40,\"origin\":[-0.1,-0."
+         "1,0],\"cell\":0.005,\"values\":[" +
+         map +
+         "]}],\"curves\":[{\"sensor\":\"bed\",\"name\":\"section\",\"x_name\":\"x_m\",\"y_name\":\"height_m\",\"x\":[" +
+         section_x + "],\"y\":[" + section_y +
+         "]},{\"sensor\":\"bed\",\"name\":\"azimuthal mean\",\"x_name\":\"radius_m\",\"y_name\":\"height_m\",\"x\":[" +
+         ring_x + "],\"y\":[" + ring_y + "]}]}";
 }
 
 }  // namespace

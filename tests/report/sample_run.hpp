@@ -1,4 +1,5 @@
-// sample_run.hpp: a complete run's folder made without a simulation, for the report's tests and for looking at the page.
+// sample_run.hpp: a complete run's folder made without a simulation, for the report's tests and for looking at the
+// page.
 #pragma once
 #include <cstddef>
 #include <string>

@@ -93,14 +93,16 @@ Mesh housing() {
       const double a = side * pi - pi / 6 + k * pi / 36;
       for (double y : {-0.0205, 0.0205}) out.add({0.0255 * std::cos(a), y, rotor_axis.z + 0.0255 * std::sin(a)});
     }
-    for (std::uint32_t k = 0; k < 12; ++k) out.quad(first + 2 * k, first + 2 * k + 1, first + 2 * k + 3, first + 2 * k + 2);
+    for (std::uint32_t k = 0; k < 12; ++k)
+      out.quad(first + 2 * k, first + 2 * k + 1, first + 2 * k + 3, first + 2 * k + 2);
   }
   return out;
 }
 
 }  // namespace
 
-void SampleWorld::add_part(const std::string& name, const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& triangles) {
+void SampleWorld::add_part(const std::string& name, const std::vector<Vec3>& vertices,
+                           const std::vector<std::uint32_t>& triangles) {
   calx::PartSettings part;
   part.name = name;
   part.geometry = "calx.mesh";
@@ -150,7 +152,8 @@ SampleWorld::SampleWorld(std::size_t grains) {
     const double z = random.between(-1, 1), a = random.between(0, 2 * pi), s = std::sqrt(1 - z * z);
     g.tilt = 0.25 * radius * Vec3{s * std::cos(a), s * std::sin(a), z};
     // Equal shares per stroke, a little scattered, in the first half of each stroke.
-    const double strokes = 2.0 * sample_cycles * static_cast<double>(k) / static_cast<double>(grains) + random.between(-0.08, 0.08);
+    const double strokes =
+        2.0 * sample_cycles * static_cast<double>(k) / static_cast<double>(grains) + random.between(-0.08, 0.08);
     const double stroke = std::max(0.0, std::floor(strokes));
     g.leaves = k < grains ? sample_start + (stroke + 0.7 * (strokes - stroke)) * sample_period / 2 : 1e9;
     grains_.push_back(g);
@@ -168,7 +171,8 @@ double SampleWorld::canister_mass(double time) const {
 }
 
 double SampleWorld::rotor_angle(double time) const {
-  const double t = std::fmod(std::max(0.0, std::min(time, sample_start + sample_cycles * sample_period - 1e-9) - sample_start), sample_period);
+  const double t = std::fmod(
+      std::max(0.0, std::min(time, sample_start + sample_cycles * sample_period - 1e-9) - sample_start), sample_period);
   if (t < 0.2) return pi * t / 0.2;
   if (t < 0.28) return pi;
   return t < 0.48 ? pi * (1 - (t - 0.28) / 0.2) : 0;

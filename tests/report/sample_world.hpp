@@ -13,7 +13,7 @@ namespace calx_test {
 constexpr double sample_start = 0.6, sample_period = 0.56;  // s: rotor starts; one cycle of two strokes
 constexpr int sample_cycles = 40;
 constexpr double sample_end = sample_start + sample_cycles * sample_period + 0.5;  // s
-constexpr double sample_mass = 2.1828;                                            // kg, dispensed in all
+constexpr double sample_mass = 2.1828;                                             // kg, dispensed in all
 
 class SampleWorld : public calx::WorldView {
  public:
@@ -49,7 +49,8 @@ class SampleWorld : public calx::WorldView {
     calx::Vec3 hopper, pile, tilt;  // tilt: half the distance between the two spheres
     double leaves = 0;              // s; beyond the end: stays in the hopper
   };
-  void add_part(const std::string& name, const std::vector<calx::Vec3>& vertices, const std::vector<std::uint32_t>& triangles);
+  void add_part(const std::string& name, const std::vector<calx::Vec3>& vertices,
+                const std::vector<std::uint32_t>& triangles);
   calx::CaseSettings settings_;
   std::vector<calx::Surface> surfaces_;
   std::vector<Grain> grains_;

@@ -19,7 +19,8 @@
   function tickText(scale, count) {
     var format = scale.tickFormat(count), domain = scale.domain();
     var a = Math.max(Math.abs(domain[0]), Math.abs(domain[1]));
-    return a !== 0 && (a < 1e-3 || a >= 1e6) ? function (v) { return v === 0 ? "0" : String(+v.toPrecision(3)); } : format;
+    return a !== 0 && (a < 1e-3 || a >= 1e6) ? function (v) { return v === 0 ? "0" : String(+v.toPrecision(3)); }
+      : function (v) { return format(v).replace(/,/g, "\u00a0"); };
   }
   function text(html) { return String(html).replace(/&/g, "&amp;").replace(/</g, "&lt;"); }
 
@@ -89,21 +90,27 @@
     if (xs[0] === xs[1]) { xs[0] -= 0.5; xs[1] += 0.5; }
     if (ys[0] === ys[1]) { var d = Math.abs(ys[0]) * 0.1 || 1; ys[0] -= ys[0] === 0 ? 0 : d; ys[1] += d; }
     if (spec.series.some(function (s) { return s.style === "bars"; })) { xs[0] -= 0.6; xs[1] += 0.6; }
+    if (spec.series.some(function (s) { return s.style === "points"; })) {
+      // Room for whole dots at the ends.
+      var room = 0.025 * (xs[1] - xs[0]);
+      xs = [xs[0] === 0 ? 0 : xs[0] - room, xs[1] + room];
+    }
     if (spec.x.categories) xs = [-0.5, spec.x.categories.length - 0.5];
     return { x: xs, y: ys };
   }
 
-  function axes(f, spec, x, y) {
+  function axes(f, spec, x, y, bare) {
     var xTicks = Math.max(3, Math.min(12, Math.round(f.w / 75))), yTicks = Math.max(2, Math.min(8, Math.round(f.h / 42)));
-    var xAxis = d3.svg.axis().scale(x).orient("bottom").ticks(xTicks).tickSize(-f.h, 0).tickPadding(7).tickFormat(tickText(x, xTicks));
+    var xAxis = d3.svg.axis().scale(x).orient("bottom").ticks(xTicks).tickSize(bare ? 4 : -f.h, 0).tickPadding(7).tickFormat(tickText(x, xTicks));
     if (spec.x.categories) {
       xAxis.tickValues(d3.range(spec.x.categories.length)).tickFormat(function (v) { return spec.x.categories[v]; });
     } else if (spec.kind === "xy" && spec.x.title === "cycle") {
       xAxis.tickValues(x.ticks(xTicks).filter(function (v) { return v % 1 === 0; })).tickFormat(d3.format("d"));
     }
-    var yAxis = d3.svg.axis().scale(y).orient("left").ticks(yTicks).tickSize(-f.w, 0).tickPadding(6).tickFormat(tickText(y, yTicks));
+    var yAxis = d3.svg.axis().scale(y).orient("left").ticks(yTicks).tickSize(bare ? 4 : -f.w, 0).tickPadding(6).tickFormat(tickText(y, yTicks));
     f.inner.select("g.x.axis").call(xAxis);
     f.inner.select("g.y.axis").call(yAxis);
+    if (bare) f.inner.selectAll("g.x.axis, g.y.axis").classed("bare", true);
   }
 
   function axisFrame(f, spec, margin) {
@@ -140,6 +147,9 @@
     (spec.bands || []).forEach(function (b) {
       g.append("rect").attr("x", 0).attr("width", f.w).attr("y", y(b.mean + b.sd)).attr("height", Math.max(1, y(b.mean - b.sd) - y(b.mean + b.sd)))
         .attr("fill", palette[1]).attr("opacity", 0.22);
+      [b.mean - b.sd, b.mean + b.sd].forEach(function (v) {
+        g.append("line").attr("x1", 0).attr("x2", f.w).attr("y1", y(v)).attr("y2", y(v)).attr("stroke", palette[1]).attr("stroke-dasharray", "2 3");
+      });
     });
     spec.series.forEach(function (s, i) {
       var colour = colourOf(s, i), rows = d3.range(s.x.length);
@@ -166,7 +176,8 @@
           g.append("path").datum(rows).attr("fill", colour).attr("opacity", 0.16)
             .attr("d", d3.svg.area().defined(ok).x(px).y0(Math.max(0, Math.min(f.h, y(0)))).y1(py));
         }
-        g.append("path").datum(rows).attr("fill", "none").attr("stroke", colour).attr("stroke-width", 1.8).attr("stroke-linejoin", "round")
+        g.append("path").datum(rows).attr("fill", "none").attr("stroke", colour)
+          .attr("stroke-width", isRough(s) ? 1.1 : 1.8).attr("stroke-linejoin", "round")
           .attr("stroke-dasharray", s.style === "dashed" ? "7 4" : null).attr("d", d3.svg.line().defined(ok).x(px).y(py));
         // A value between two gaps is no line; a dot keeps it visible.
         if (rows.filter(ok).length === 1) g.append("circle").attr("cx", px(rows.filter(ok)[0])).attr("cy", py(rows.filter(ok)[0])).attr("r", 3).attr("fill", colour);
@@ -175,6 +186,18 @@
     (spec.bands || []).forEach(function (b) {
       g.append("line").attr("x1", 0).attr("x2", f.w).attr("y1", y(b.mean)).attr("y2", y(b.mean)).attr("stroke", palette[1]).attr("stroke-width", 1.8);
     });
+  }
+
+  // A line that goes up and down all the time would fill its chart with ink.
+  function isRough(s) {
+    var way = 0, low = Infinity, high = -Infinity;
+    s.y.forEach(function (v, k) {
+      if (!finite(v)) return;
+      low = Math.min(low, v);
+      high = Math.max(high, v);
+      if (k > 0 && finite(s.y[k - 1])) way += Math.abs(v - s.y[k - 1]);
+    });
+    return way > 15 * (high - low);
   }
 
   function nearest(s, at) {
@@ -273,8 +296,7 @@
       pen.fillStyle = colour(v);
       pen.fillRect(k % spec.nx, spec.ny - 1 - Math.floor(k / spec.nx), 1, 1);
     });
-    axes(f, spec, x, y);
-    f.inner.selectAll(".axis").classed("bare", true);
+    axes(f, spec, x, y, true);
     f.inner.append("image").attr("width", f.w).attr("height", f.h).attr("preserveAspectRatio", "none").attr("href", canvas.toDataURL())
       .style("image-rendering", "pixelated");
     var bar = f.inner.append("g").attr("transform", "translate(" + (f.w + 18) + ",0)"), id = "shade" + (++serial);

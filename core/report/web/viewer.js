@@ -9,7 +9,7 @@
   var element = function (id) { return document.getElementById(id); };
   var stage = document.querySelector("#viewer .stage"), canvas = stage.querySelector("canvas"), clock = stage.querySelector(".clock");
   // The anchors of section_picture.cpp: slow blue to fast red.
-  var ramp = [[44, 66, 117], [33, 120, 160], [60, 166, 150], [158, 205, 110], [246, 200, 72], [214, 69, 45]];
+  var ramp = [[116, 142, 184], [52, 136, 178], [64, 172, 142], [166, 206, 96], [247, 192, 66], [212, 62, 42]];
 
   function bytes(base64) {
     var raw = atob(base64), out = new Uint8Array(raw.length);
@@ -26,7 +26,7 @@
     element("stills").innerHTML = "<p class=\"absent\"></p>";
     element("stills").firstChild.textContent = why + " The section below needs none.";
   }
-  var options = { antialias: true, alpha: true, preserveDrawingBuffer: true };
+  var options = { antialias: true, alpha: true };
   var context = canvas.getContext("webgl2", options) || canvas.getContext("webgl", options);
   if (!context) return refuse("3-D pictures need WebGL, which this browser does not offer.");
   var renderer = new THREE.WebGLRenderer({ canvas: canvas, context: context, alpha: true, antialias: true });
@@ -180,8 +180,8 @@
     "  vec4 clip = projectionMatrix * vec4(centre + n * r, 1.0);",
     "  gl_FragDepthEXT = 0.5 * clip.z / clip.w + 0.5;",
     "#endif",
-    "  float light = 0.52 + 0.55 * max(0.0, dot(n, normalize(vec3(-0.4, 0.6, 0.7))));",
-    "  gl_FragColor = vec4(colour * light * mix(0.55, 1.0, smoothstep(0.0, 0.55, n.z)), 1.0);",
+    "  float light = 0.66 + 0.46 * max(0.0, dot(n, normalize(vec3(-0.4, 0.6, 0.7))));",
+    "  gl_FragColor = vec4(colour * light * mix(0.6, 1.0, smoothstep(0.0, 0.5, n.z)), 1.0);",
     "}"].join("\n");
   var now = null, next = null, grains = new THREE.InstancedBufferGeometry();
   if (data.spheres > 0) {
@@ -249,11 +249,12 @@
 
   var views = {
     front: vDepth.clone().negate(), side: vRight.clone(), top: vUp.clone().addScaledVector(vDepth, -0.001),
-    oblique: vDepth.clone().negate().addScaledVector(vRight, 0.45).addScaledVector(vUp, 0.35)
+    oblique: vDepth.clone().negate().addScaledVector(vRight, 0.45).addScaledVector(vUp, 0.35),
+    still: vDepth.clone().negate().addScaledVector(vRight, 0.22).addScaledVector(vUp, 0.14)
   };
   function look(cam, name, aspect) {
     var from = views[name].clone().normalize();
-    var tall = name === "top" ? along(vDepth) : along(vUp) * 0.97 + (name === "oblique" ? 0.3 * along(vDepth) : 0);
+    var tall = name === "top" ? along(vDepth) : along(vUp) * 0.97 + (name === "oblique" ? 0.3 * along(vDepth) : 0.1 * along(vDepth));
     var wide = name === "side" ? along(vDepth) : along(vRight) + (name === "oblique" ? 0.3 * along(vDepth) : 0);
     var deep = name === "top" ? along(vUp) : Math.max(along(vDepth), along(vRight));
     var away = 1.06 * Math.max(tall, wide / aspect) / 2 / Math.tan(cam.fov * Math.PI / 360) + deep / 2;
@@ -280,12 +281,12 @@
   function takeStills() {
     var host = element("stills"), cam = new THREE.PerspectiveCamera(24, 1, 0.01, 100), taken = {};
     cam.up.copy(vUp);
-    var width = 420, height = Math.round(Math.max(300, Math.min(640, width * along(vUp) / Math.max(along(vRight) + 0.3 * along(vDepth), 1e-9))));
+    // Tall apparatus get tall pictures, within reason.
+    var tall = along(vUp) / Math.max(along(vRight) + 0.3 * along(vDepth), 1e-9), width = tall > 1.4 ? 330 : 420;
+    var height = Math.round(width * Math.max(0.7, Math.min(2, tall)));
     renderer.setPixelRatio(2);
     renderer.setSize(width, height, false);
-    look(cam, "oblique", width / height);
-    cam.position.copy(middle).addScaledVector(vDepth.clone().negate().addScaledVector(vRight, 0.28).addScaledVector(vUp, 0.2).normalize(), cam.position.distanceTo(middle));
-    cam.lookAt(middle);
+    look(cam, "still", width / height);
     [0, 1 / 3, 2 / 3, 1].forEach(function (share) {
       var k = Math.round(share * last);
       if (taken[k]) return;
