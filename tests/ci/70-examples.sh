@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Every case below examples/ is listed in examples.txt and does what the list says: it runs to its end and writes its
+# report, or it passes calx check.
+source "$(dirname "$0")/common.sh"
+list=tests/ci/examples.txt
+status=0
+
+fail() {
+  echo "FAIL $*"
+  status=1
+}
+
+while read -r file; do
+  grep -qE "^(run|check) $file( |$)" "$list" || fail "$file: not in $list"
+done < <(find examples -name '*.json' ! -name '*.plugin.json' ! -path '*.out/*')
+
+while read -r command file options; do
+  [[ -z $command || $command == \#* ]] && continue
+  echo "== $command $file $options"
+  start=$SECONDS
+  case $command in
+    check)
+      # shellcheck disable=SC2086  # options are words
+      ./calx.sh check "$file" $options || fail "$file: calx check"
+      ;;
+    run)
+      out=build/examples/$(basename "$file" .json)
+      # shellcheck disable=SC2086
+      if ./calx.sh run "$file" -o "$out" --overwrite --quiet $options; then
+        grep -q '"status": *"done"' "$out/summary.json" || fail "$file: summary.json does not say done"
+        [[ -s $out/report.html ]] || fail "$file: no report.html"
+      else
+        fail "$file: calx run"
+      fi
+      ;;
+    *) fail "$list: $command is neither run nor check" ;;
+  esac
+  echo "   $((SECONDS - start)) s"
+done <"$list"
+exit $status
