@@ -1,5 +1,5 @@
-// race.cpp: the test of the thread sanitizer: barriers between loops are no race; with any argument two threads write one
-// variable, which must be reported.
+// race.cpp: the test of the thread sanitizer: barriers between loops are no race; with any argument two threads write
+// one variable, which must be reported.
 #include <cstdio>
 #include <vector>
 
