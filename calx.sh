@@ -41,14 +41,15 @@ install_packages() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${known[@]}" >&2
 }
 
-# build TARGETS...: all output to stderr, so that calx alone writes to stdout; says nothing when nothing is to be done.
+# build TARGETS...: all output to stderr, so that calx alone writes to stdout. Shows progress of a first build only.
 build() {
-  local tree=$home/build/release
+  local tree=$home/build/release how=()
   mkdir -p "$tree"
   if [[ ! -f $tree/build.ninja || $home/CMakePresets.json -nt $tree/build.ninja ]]; then
     (cd "$home" && cmake --preset release) >"$tree/configure.log" 2>&1 || { cat "$tree/configure.log" >&2; exit 1; }
   fi
-  [[ $(ninja -C "$tree" -n "$@" 2>/dev/null) == *"no work to do"* ]] || ninja -C "$tree" -j "$cores" "$@" >&2
+  [[ $1 == all || ! -x $tree/bin/calx ]] || how=(--quiet)
+  ninja -C "$tree" -j "$cores" "${how[@]}" "$@" | { grep -v 'no work to do' || true; } >&2
 }
 
 run_tests() {
