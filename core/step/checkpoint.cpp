@@ -109,7 +109,7 @@ void Engine::load(const StateReader& in) {
   place_parts(0, places_);
   walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
   sphere_wrench_.resize(spheres);
-  sum_.resize(particles.count());
+  if (particles.has_clumps) sum_.resize(particles.count());
   results_.resize(pairs_.chunks.size());
   rebuilds_ = counts[0];
   sorted_at_ = counts[1];

@@ -173,7 +173,7 @@ void Engine::rebuild(double dt, bool reorder) {
     reference_[k] = position(s[k]);
   }
   sphere_wrench_.resize(spheres);
-  sum_.resize(particles.count());
+  if (particles.has_clumps) sum_.resize(particles.count());
   results_.resize(pairs_.chunks.size());
   ++rebuilds_;
   stale_ = count_changed_ = false;
@@ -244,12 +244,12 @@ GuardReport Engine::finish(double t, double dt) {
       if (!forces.empty()) force_pass(c, worker, t, dt);
       if (options.verlet) {
         finish_verlet(c, dt);
+        const Chunk& chunk = pairs_.chunks[c];
+        std::copy(sums().begin() + chunk.first_particle, sums().begin() + chunk.last_particle,
+                  particles.wrench.begin() + chunk.first_particle);
       } else {
         integrate_euler(c, dt);
       }
-      const Chunk& chunk = pairs_.chunks[c];
-      std::copy(sum_.begin() + chunk.first_particle, sum_.begin() + chunk.last_particle,
-                particles.wrench.begin() + chunk.first_particle);
       guard_pass(c);
     }
   }

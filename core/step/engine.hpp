@@ -136,7 +136,9 @@ class Engine {
   WallList walls_;
   HistorySpec history_;
   Column<Wrench> sphere_wrench_;
-  Column<Wrench> sum_;                  // per particle, of this step
+  Column<Wrench> sum_;                  // per clump, of this step
+  /// Sums per particle of this step: a particle of one sphere is its sphere.
+  Column<Wrench>& sums() { return particles.has_clumps ? sum_ : sphere_wrench_; }
   Column<double> margin_;               // per particle, m
   Column<Vec3> reference_;              // per sphere, position when the pair list was built
   Column<std::uint32_t> list_rank_;     // per sphere, its rank in the present list

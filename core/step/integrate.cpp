@@ -139,11 +139,7 @@ void Engine::sum_pass(std::size_t c) {
       a.ty += b.ty;
       a.tz += b.tz;
     }
-  if (!particles.has_clumps) {
-    std::copy(sphere_wrench_.begin() + chunk.first_particle, sphere_wrench_.begin() + chunk.last_particle,
-              sum_.begin() + chunk.first_particle);
-    return;
-  }
+  if (!particles.has_clumps) return;
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
     Wrench sum;
     const Vec3 centre = position(particles.body[p]);
@@ -188,7 +184,7 @@ void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
   for (const auto& force : forces) force.table->eval(force.instance, &block);
   for (std::uint32_t k = 0; k < n; ++k) {
     const Record& b = particles.body[chunk.first_particle + k];
-    Wrench& sum = sum_[chunk.first_particle + k];
+    Wrench& sum = sums()[chunk.first_particle + k];
     const Wrench add{column[11][k], column[12][k], column[13][k], column[14][k], column[15][k], column[16][k]};
     results_[c].force_work += (dot(force_of(add), velocity(b)) + dot(torque_of(add), spin(b))) * dt;
     sum.fx += add.fx;
@@ -204,9 +200,10 @@ void Engine::integrate_euler(std::size_t c, double dt) {
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
   const Vec3 g = options.gravity;
+  const Column<Wrench>& total = sums();
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
     Record& b = particles.body[p];
-    const Wrench& sum = sum_[p];
+    const Wrench& sum = total[p];
     const double f = dt / b.m;
     const Vec3 v{b.vx + (f * sum.fx + g.x * dt), b.vy + (f * sum.fy + g.y * dt), b.vz + (f * sum.fz + g.z * dt)};
     if (options.ledger) {
@@ -223,7 +220,7 @@ void Engine::integrate_euler(std::size_t c, double dt) {
     result.kinetic_rotation += 0.25 * (before + norm2(spin(b)) / b.aux);
   }
   if (!particles.has_clumps) return;
-  const auto energy = turn_particles(particles, sum_, chunk.first_particle, chunk.last_particle, dt, dt, 0);
+  const auto energy = turn_particles(particles, total, chunk.first_particle, chunk.last_particle, dt, dt, 0);
   result.kinetic_rotation += 0.5 * (energy.first + energy.second);
   particles.refresh_members(chunk.first_particle, chunk.last_particle);
 }
@@ -253,7 +250,7 @@ void Engine::finish_verlet(std::size_t c, double dt) {
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
     Record& b = particles.body[p];
     const Wrench& old = particles.wrench[p];
-    const Wrench& now = sum_[p];
+    const Wrench& now = sums()[p];
     set_velocity(b, velocity(b) + 0.5 * dt / b.m * (force_of(now) - force_of(old)));
     const Vec3 change = 0.5 * dt * (torque_of(now) - torque_of(old));
     if (!particles.has_clumps) {

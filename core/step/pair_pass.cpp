@@ -4,6 +4,9 @@
 namespace calx {
 namespace {
 
+/// Entries between asking for a partner's data and using it.
+constexpr std::size_t kAhead = 64;
+
 /// Contact kinematics of a block, in columns. The contact point lies in the middle of the overlap; lever arms are
 /// r - overlap/2. Velocity: that of i relative to j at the contact point. Returns the largest overlap / (2 r_eff).
 CALX_HOT double kinematics(std::uint32_t n, const double* __restrict dx, const double* __restrict dy,
@@ -67,12 +70,19 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
   std::fill(pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.first_slot),
             pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.last_slot), std::uint8_t{0});
   const bool wraps = options.wrap.any();
+  const char* sums = reinterpret_cast<const char*>(sphere_wrench_.data());
   w.cross_done = pairs_.first_cross[c];
+  const std::size_t last_row = chunk.last_entry - 1;
   for (std::size_t e0 = chunk.first_entry; e0 < chunk.last_entry; e0 += kBlockRows) {
     const auto rows = static_cast<std::uint32_t>(std::min<std::size_t>(kBlockRows, chunk.last_entry - e0));
     w.tile = e0;
     std::uint32_t n = 0, crossed = 0;
     for (std::uint32_t k = 0; k < rows; ++k) {
+      // Partners lie anywhere: without asking early, most of the time goes by waiting for them.
+      const std::uint32_t soon = pj[std::min(e0 + k + kAhead, last_row)];
+      __builtin_prefetch(s + soon);
+      __builtin_prefetch(reinterpret_cast<const char*>(s + soon) + 64);
+      __builtin_prefetch(sums + sizeof(Wrench) * soon, 1);
       const Record& a = s[pi[e0 + k]];
       const Record& b = s[pj[e0 + k]];
       Vec3 d{a.x - b.x, a.y - b.y, a.z - b.z};

@@ -56,7 +56,7 @@ struct Particles {
   // One row per particle, rank order.
   Column<Record> body;
   Column<Quat> turn;                 // principal frame to world
-  Column<Wrench> wrench;             // sums of the last step; kept for verlet and output
+  Column<Wrench> wrench;             // sums of the last step; kept by verlet only
   Column<std::uint32_t> id, shape, material, first_sphere;  // first_sphere has count()+1 entries
   Column<double> scale;
   // One row per sphere. When every shape is a single sphere the spheres are the bodies and this array is empty.
