@@ -8,6 +8,7 @@
 #include "base/random.hpp"
 #include "store/particles.hpp"
 #include "support/memory_state.hpp"
+#include "support/near.hpp"
 
 using namespace calx;
 
@@ -60,27 +61,26 @@ TEST_CASE("an inserted particle has mass, moments and bound of its shape, scale 
   for (std::size_t k = 0; k < p.count(); ++k) {
     const Shape& s = p.shapes[p.shape[k]];
     const double f = p.scale[k], rho = p.density[p.material[k]];
-    CHECK(p.mass(k) == doctest::Approx(rho * s.volume * f * f * f).epsilon(1e-14));
-    CHECK(p.inertia(k).y == doctest::Approx(rho * s.inertia.y * std::pow(f, 5)).epsilon(1e-14));
-    CHECK(p.body[k].r == doctest::Approx(s.bound * f).epsilon(1e-14));
-    CHECK(p.equal_radius(k) ==
-          doctest::Approx(std::cbrt(3 * s.volume * f * f * f / (4 * 3.14159265358979))).epsilon(1e-12));
+    CHECK(p.mass(k) == near(rho * s.volume * f * f * f, 1e-14));
+    CHECK(p.inertia(k).y == near(rho * s.inertia.y * std::pow(f, 5), 1e-14));
+    CHECK(p.body[k].r == near(s.bound * f, 1e-14));
+    CHECK(p.equal_radius(k) == near(std::cbrt(3 * s.volume * f * f * f / (4 * 3.14159265358979)), 1e-12));
     CHECK(p.id[k] == k);
   }
-  CHECK(p.body[0].aux == doctest::Approx(1 / (0.4 * p.mass(0) * p.body[0].r * p.body[0].r)).epsilon(1e-12));
+  CHECK(p.body[0].aux == near(1 / (0.4 * p.mass(0) * p.body[0].r * p.body[0].r), 1e-12));
 }
 
 TEST_CASE("kinetic energy of a spinning clump is m v^2 / 2 + w I w / 2") {
   Particles p = mixture(3);
   const Vec3 w = rotate(conjugate(p.turn[2]), spin(p.body[2])), i = p.inertia(2);
-  CHECK(p.kinetic_energy(2) == doctest::Approx(0.5 * p.mass(2) * norm2(velocity(p.body[2])) +
-                                               0.5 * (i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z))
-                                   .epsilon(1e-14));
+  CHECK(p.kinetic_energy(2) ==
+        near(0.5 * p.mass(2) * norm2(velocity(p.body[2])) + 0.5 * (i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z),
+             1e-14));
   // Spin along a principal axis.
   p.body[2].vx = p.body[2].vy = p.body[2].vz = 0;
   const Vec3 axis = rotate(p.turn[2], {0, 1, 0});
   p.body[2].wx = 7 * axis.x, p.body[2].wy = 7 * axis.y, p.body[2].wz = 7 * axis.z;
-  CHECK(p.kinetic_energy(2) == doctest::Approx(24.5 * i.y).epsilon(1e-13));
+  CHECK(p.kinetic_energy(2) == near(24.5 * i.y, 1e-13));
 }
 
 TEST_CASE("a permutation carries every column of a particle and of its spheres") {

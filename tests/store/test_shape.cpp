@@ -6,14 +6,13 @@
 #include <stdexcept>
 
 #include "store/particles.hpp"
+#include "support/near.hpp"
 
 using namespace calx;
 
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-doctest::Approx near(double value, double relative) { return doctest::Approx(value).epsilon(relative); }
 
 /// Volume, centre and moments about the centre of two spheres on the z axis, by midpoints of 4e5 discs.
 struct Discs {
