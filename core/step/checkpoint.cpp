@@ -90,6 +90,10 @@ void Engine::load(const StateReader& in) {
   cell_ = lengths[2];
   largest_overlap_ = lengths[3];
   energy_ = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8], sums[9]};
+  uniform_ = one_material();
+  // Lists of what this engine may have run before must not lend their history.
+  pairs_ = {};
+  walls_ = {};
   const std::size_t spheres = particles.sphere_count();
   list_rank_.resize(spheres);
   for (std::uint32_t k = 0; k < spheres; ++k) list_rank_[k] = k;

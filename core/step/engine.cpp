@@ -56,6 +56,11 @@ void Engine::prepare(int threads) {
   stale_ = true;
 }
 
+bool Engine::one_material() const {
+  const auto& m = particles.material;
+  return std::all_of(m.begin(), m.end(), [&](std::uint32_t k) { return k == m[0]; });
+}
+
 int Engine::team() const { return std::max(1, std::min(threads_, static_cast<int>(pairs_.chunks.size()))); }
 
 const LawList& Engine::law(std::uint32_t a, std::uint32_t b) const {
@@ -142,8 +147,7 @@ void Engine::rebuild(double dt, bool reorder) {
     smallest_margin_ = options.skin > 0 ? options.skin : 0.1 * smallest;
     largest_margin_ = std::max(smallest, smallest_margin_);
     cell_ = 2 * (largest + smallest_margin_);
-    uniform_ = std::all_of(particles.material.begin(), particles.material.end(),
-                           [&](std::uint32_t m) { return m == particles.material[0]; });
+    uniform_ = one_material();
   }
   if (reorder && particles.count() > 0) {
     const auto order = morton_order(particles, cell_);

@@ -127,6 +127,7 @@ class Engine {
   void drift_verlet(std::size_t chunk, double dt);
   void finish_verlet(std::size_t chunk, double dt);
   void guard_pass(std::size_t chunk);
+  bool one_material() const;
   /// Threads worth waking: no more than there are chunks.
   int team() const;
   const LawList& law(std::uint32_t a, std::uint32_t b) const;

@@ -106,7 +106,8 @@ Quat quaternion(const Eigen::Matrix3d& m) {
   return normalized(Quat{q.w(), q.x(), q.y(), q.z()});
 }
 
-/// True when every sphere can be reached from the first over touching spheres.
+/// True when every sphere can be reached from the first over touching spheres. Centres drawn at the sum of the radii touch
+/// whatever rounding made of them.
 bool connected(const std::vector<Shape::Member>& spheres) {
   std::vector<std::size_t> todo{0};
   std::vector<bool> seen(spheres.size(), false);
@@ -116,7 +117,7 @@ bool connected(const std::vector<Shape::Member>& spheres) {
     const auto a = spheres[todo.back()];
     todo.pop_back();
     for (std::size_t k = 0; k < spheres.size(); ++k) {
-      if (seen[k] || norm(spheres[k].at - a.at) > a.radius + spheres[k].radius) continue;
+      if (seen[k] || norm(spheres[k].at - a.at) > (a.radius + spheres[k].radius) * (1 + 1e-9)) continue;
       seen[k] = true;
       ++reached;
       todo.push_back(k);
