@@ -66,9 +66,10 @@ const calx_field options[] = {
     {"dashpot", "compressive|clipped|always",
      "compressive: only where the branch force pushes; clipped: nor does it turn a push into a pull; always: no switch", 0,
      2, 0, CALX_FIELD_CHOICE, 0},
-    {"tangential", "displacement|rescaled",
-     "what a growing contact keeps: the tangential displacement, as most codes do, or the force, which never creates energy",
-     0, 1, 0, CALX_FIELD_CHOICE, 0},
+    {"tangential", "rescaled|displacement|incremental",
+     "rescaled: a growing contact keeps the tangential force, a shrinking one the displacement, and no cycle creates "
+     "energy; displacement: always the displacement (EDEM, LIGGGHTS); incremental: always the force (Mindlin increments)",
+     0, 2, 0, CALX_FIELD_CHOICE, 0},
     CALX_ROLLING_OPTION};
 
 enum { YOUNG, POISSON };
@@ -109,7 +110,7 @@ class Epam : public calx::Instance {
     retrace_ = choice(config, "adhesion_reload") == 1;
     tsuji_ = hertz_ && choice(config, "damping") == 0;
     dashpot_ = choice(config, "dashpot");
-    rescaled_ = choice(config, "tangential") == 1;
+    tangential_ = choice(config, "tangential");
     rolling_ = choice(config, "rolling");
     std::memset(&table_, 0, sizeof table_);
     if (chi2_ != own && hertz_)
@@ -202,7 +203,8 @@ class Epam : public calx::Instance {
     row.clipped = dashpot_ == 1 ? 1 : 0;
     // 8 G* sqrt(R* delta) = 6 G*/E* times k1 sqrt(delta), so a given k1 scales both stiffnesses.
     row.kt_share = value[TANGENTIAL_RATIO] * (hertz_ ? 6 * inverse_e / inverse_g : 1);
-    row.rescaled = rescaled_ ? 1 : 0;
+    row.grow_keeps = tangential_ == 1 ? 0 : 1;
+    row.shrink_keeps = tangential_ == 2 ? 1 : 0;
     row.friction = value[FRICTION];
     CALX_ROLLING_DERIVE(rolling_, value + ROLLING_FIRST, row);
   }
@@ -218,8 +220,8 @@ class Epam : public calx::Instance {
     return 0.17 * std::sqrt(m_eff / (secant * std::fmax(0.5 * twice_n * row.unload, row.kt_share)));
   }
 
-  bool hertz_, literal_cap_, retrace_, tsuji_, rescaled_;
-  int chi2_, dashpot_, rolling_;
+  bool hertz_, literal_cap_, retrace_, tsuji_;
+  int chi2_, dashpot_, tangential_, rolling_;
   calx_field given_[sizeof given / sizeof *given];
   calx_contact_law table_;
 };

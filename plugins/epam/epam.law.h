@@ -27,7 +27,8 @@
   X(dash_always, "1", 0, 1, 0, 0, "1: the dashpot acts in the dead zone and on the tensile side, too")                \
   X(clipped, "1", 0, 1, 0, 0, "1: the dashpot never makes a compressive contact pull")                                \
   X(kt_share, "1", 0, 1e3, 0.5, 0, "tangential stiffness over k1 delta^(n-1)")                                        \
-  X(rescaled, "1", 0, 1, 0, 0, "1: a growing contact keeps its tangential force, not its tangential displacement")    \
+  X(grow_keeps, "1", 0, 1, 1, 0, "1: a growing contact keeps its tangential force, 0: its tangential displacement")    \
+  X(shrink_keeps, "1", 0, 1, 0, 0, "1: a shrinking contact keeps its tangential force, 0: its displacement")           \
   X(friction, "1", 0, 10, 0.5, 0, "sliding friction")                                                                 \
   calx_rolling_pair_LIST(X)
 #define epam_state_ROWS(X, plastic_unit, k_adh_unit)                                                        \
@@ -202,7 +203,8 @@ CALX_FN void CALX_ID(epam_force)(const CALX_ID(calx_contact) * c, const CALX_ID(
   const real kt_before = p->kt_share * (hertz > R(0.5) ? k1 * root_b : k1);
   const real limit = p->friction * calx_max(branch + k_adh * dchi, R(0.0));
   /* (kt_before / kt)^2 is the ratio of the overlaps for exponent 1.5, else 1. */
-  const real num = hertz > R(0.5) ? (p->rescaled > R(0.5) ? calx_min(m->before, d) : d) : R(1.0);
+  const real ratio = m->before < d ? (p->grow_keeps > R(0.5) ? m->before : d) : (p->shrink_keeps > R(0.5) ? m->before : d);
+  const real num = hertz > R(0.5) ? ratio : R(1.0);
   const real den = hertz > R(0.5) ? d : R(1.0);
   CALX_ID(calx_slide)(c, vn, kt, kt_before, num, den, p->dash_t * calx_sqrt(kt * c->m_eff), limit, spring);
   out->fx = fn * c->nx + spring->fx;

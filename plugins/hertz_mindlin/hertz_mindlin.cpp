@@ -40,20 +40,25 @@ const char sha256[] =
 // the case file holds options and given values in one object.
 const calx_field options[] = {
     CALX_ROLLING_OPTION
-    {"tension", "allowed|clipped",
-     "allowed: the dashpot may pull at the end of a contact, restitution is exact; clipped: the normal force never pulls",
-     0, 1, 0, CALX_FIELD_CHOICE, 0},
-    {"tangential", "displacement|rescaled",
-     "what a growing contact keeps: the tangential displacement, as most codes do, or the force, which never creates energy",
-     0, 1, 0, CALX_FIELD_CHOICE, 0}};
+    {"tension", "allowed|clipped|gripping",
+     "allowed: the dashpot may pull at the end of a contact, restitution is exact, and there is no friction while it does; "
+     "clipped: the normal force never pulls; gripping: as allowed, with friction from the size of the pull (LIGGGHTS)",
+     0, 2, 0, CALX_FIELD_CHOICE, 0},
+    {"tangential", "rescaled|displacement|incremental",
+     "rescaled: a growing contact keeps the tangential force, a shrinking one the displacement, and no cycle creates "
+     "energy; displacement: always the displacement (EDEM, LIGGGHTS); incremental: always the force (Mindlin increments)",
+     0, 2, 0, CALX_FIELD_CHOICE, 0}};
 enum { YOUNG, POISSON };
 const calx_field material[] = {
     {"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
     {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
-enum { RESTITUTION, FRICTION, ROLLING_FIRST };
+enum { RESTITUTION, FRICTION, TANGENTIAL_RATIO, ROLLING_FIRST };
+enum { RESCALED, DISPLACEMENT, INCREMENTAL };
+enum { ALLOWED, CLIPPED, GRIPPING };
 const calx_field given[] = {
     {"restitution", "1", "speed after over speed before a head-on impact", 0, 1, 0.5, CALX_FIELD_REQUIRED, 0},
     {"friction", "1", "sliding friction, tangential over normal force", 0, 10, 0.5, CALX_FIELD_REQUIRED, 0},
+    {"tangential_ratio", "1", "tangential stiffness over Mindlin's 8 G* sqrt(R* delta)", 0, 10, 1, 0, 0},
     CALX_ROLLING_GIVEN};
 
 class HertzMindlin : public calx::Instance {
@@ -62,8 +67,8 @@ class HertzMindlin : public calx::Instance {
 
   HertzMindlin(const calx_host*, const calx_config& config)
       : rolling_(static_cast<int>(calx::parameter(descriptor, config, "rolling"))),
-        clipped_(calx::parameter(descriptor, config, "tension") > 0.5),
-        rescaled_(calx::parameter(descriptor, config, "tangential") > 0.5) {
+        tension_(static_cast<int>(calx::parameter(descriptor, config, "tension"))),
+        tangential_(static_cast<int>(calx::parameter(descriptor, config, "tangential"))) {
     std::memset(&table_, 0, sizeof table_);
     if (rolling_ == CALX_ROLLING_NONE)
       CALX_LAW_FILL(table_, hertz_mindlin);
@@ -100,7 +105,7 @@ class HertzMindlin : public calx::Instance {
       }
       hertz_mindlin_pair_f64 row;
       row.two_e = 2 / inverse_e;
-      row.eight_g = 8 / inverse_g;
+      row.eight_g = 8 * value[TANGENTIAL_RATIO] / inverse_g;
       // beta = -ln e / sqrt(pi^2 + ln^2 e); its limit for e = 0 is 1.
       const double pi = 3.14159265358979323846;
       const double log_e = std::log(value[RESTITUTION]);
@@ -108,23 +113,24 @@ class HertzMindlin : public calx::Instance {
       row.dash_n = 2 * std::sqrt(5.0 / 6.0) * beta * std::sqrt(row.two_e);
       row.dash_t = 2 * std::sqrt(5.0 / 6.0) * beta * std::sqrt(row.eight_g);
       row.friction = value[FRICTION];
-      row.lowest = law.clipped_ ? 0 : -1e30;
-      row.rescaled = law.rescaled_ ? 1 : 0;
+      row.lowest = law.tension_ == CLIPPED ? 0 : -1e30;
+      row.pull_grip = law.tension_ == GRIPPING ? 1 : 0;
+      row.grow_keeps = law.tangential_ == DISPLACEMENT ? 0 : 1;
+      row.shrink_keeps = law.tangential_ == INCREMENTAL ? 1 : 0;
       CALX_ROLLING_DERIVE(law.rolling_, value + ROLLING_FIRST, row);
       std::memcpy(pair, &row, law.table_.pair_count * sizeof *pair);
     });
   }
 
   // 0.17 sqrt(m / K): stable for a sphere held by many springs of stiffness K (O'Sullivan, Bray 2004). K is the tangent
-  // stiffness at the largest expected overlap; S_t < S_n for every Poisson's ratio.
+  // stiffness at the largest expected overlap; Mindlin's S_t < S_n for every Poisson's ratio, a scaled one may exceed it.
   static double CALX_CALL stable_dt(const double* pair, double m_eff, double r_eff, double overlap) noexcept {
     hertz_mindlin_pair_f64 row;
     std::memcpy(&row, pair, offsetof(hertz_mindlin_pair_f64, calx_unused));
-    return 0.17 * std::sqrt(m_eff / (row.two_e * std::sqrt(r_eff * overlap)));
+    return 0.17 * std::sqrt(m_eff / (std::fmax(row.two_e, row.eight_g) * std::sqrt(r_eff * overlap)));
   }
 
-  int rolling_;
-  bool clipped_, rescaled_;
+  int rolling_, tension_, tangential_;
   calx_contact_law table_;
 };
 

@@ -3,12 +3,14 @@
  * Columns: name, unit, lowest, highest, preset, flags, meaning. Equations and symbols: README.md. */
 #define hertz_mindlin_pair_LIST(X)                                                                                \
   X(two_e, "Pa", 0, 1e14, 2e7, 0, "twice the effective Young's modulus, 2 E*")                                     \
-  X(eight_g, "Pa", 0, 1e14, 2e7, 0, "eight times the effective shear modulus, 8 G*")                               \
+  X(eight_g, "Pa", 0, 1e14, 2e7, 0, "eight times the effective shear modulus times tangential_ratio")              \
   X(dash_n, "Pa^0.5", 0, 1e8, 0, 0, "normal dashpot: 2 sqrt(5/6) beta sqrt(2 E*)")                                 \
   X(dash_t, "Pa^0.5", 0, 1e8, 0, 0, "tangential dashpot: 2 sqrt(5/6) beta sqrt(8 G*)")                             \
   X(friction, "1", 0, 10, 0.5, 0, "sliding friction")                                                              \
   X(lowest, "N", -1e30, 0, -1e30, 0, "lowest normal force: 0 where tension is clipped, else far below any force") \
-  X(rescaled, "1", 0, 1, 0, 0, "1: a growing contact keeps its tangential force, not its tangential displacement")   \
+  X(pull_grip, "1", 0, 1, 0, 0, "1: friction acts on a pulling dashpot, too")                                         \
+  X(grow_keeps, "1", 0, 1, 1, 0, "1: a growing contact keeps its tangential force, 0: its tangential displacement")   \
+  X(shrink_keeps, "1", 0, 1, 0, 0, "1: a shrinking contact keeps its tangential force, 0: its displacement")          \
   calx_rolling_pair_LIST(X)
 #define hertz_mindlin_prop_LIST(X)
 #define hertz_mindlin_state_LIST(X)                                                                  \
@@ -60,8 +62,10 @@ CALX_FN void CALX_ID(hertz_mindlin_force)(const CALX_ID(calx_contact) * c, const
   load->kt_before = p->eight_g * a_before;
 
   /* S_t grows with the root of the overlap, so (kt_before / kt)^2 is the ratio of the overlaps. */
-  CALX_ID(calx_slide)(c, vn, st, load->kt_before, p->rescaled > R(0.5) ? calx_min(before, overlap) : overlap, overlap,
-                      p->dash_t * root, p->friction * calx_max(fn, R(0.0)), spring);
+  const real num = before < overlap ? (p->grow_keeps > R(0.5) ? before : overlap)
+                                    : (p->shrink_keeps > R(0.5) ? before : overlap);
+  CALX_ID(calx_slide)(c, vn, st, load->kt_before, num, overlap, p->dash_t * root,
+                      p->friction * calx_max(fn, -p->pull_grip * fn), spring);
   out->fx = fn * c->nx + spring->fx;
   out->fy = fn * c->ny + spring->fy;
   out->fz = fn * c->nz + spring->fz;

@@ -325,6 +325,20 @@ inline double restitution(const Law& law, Body i, Body j, double v, double dt, d
   return parted ? dot(d.i.v - d.j.v, d.normal()) / v : -1;
 }
 
+/// Of the centre; spin positive where friction slowed the slide.
+struct Rebound {
+  double vt, vn, omega;
+  double patch(double r) const { return vt - omega * r; }
+};
+/// Impact of a sphere on a wall with given tangential and normal speed, undisturbed until they part.
+inline Rebound oblique(const Law& law, Body s, double vt, double vn, double dt) {
+  s.x = {0, 0, s.r};
+  s.v = {vt, 0, -vn};
+  Duel d(law, s, wall());
+  if (!d.collide(dt, 1)) throw std::runtime_error("the sphere does not come off the wall");
+  return {d.i.v.x, d.i.v.z, d.i.w.y};
+}
+
 /// Normal force along a prescribed overlap path with zero velocity input, as a quasi-static test rig sees it.
 inline double press(const Law& law, std::vector<double>& state, double overlap, double r_i, double r_j,
                     Output* all = nullptr) {

@@ -3,9 +3,9 @@
  * laws. Include after prelude.h, once per precision; a host puts its text after the prelude's.
  *
  * The spring is a displacement vector in the contact plane (m). Each step it is carried into the new plane: projected,
- * then given its old length back. Its stiffness may change with the overlap. While it grows, the force is kept and the
- * displacement shrinks; while it falls, the displacement is kept and the force falls with it. Both lose energy or keep
- * it, so no cycle of loading and shearing creates energy (the rule of LAMMPS' mindlin/rescale). */
+ * then given its old length back. Its stiffness may change with the overlap; the law says, by num and den, whether the
+ * force or the displacement is kept then. Force while it grows and displacement while it falls lose energy or keep it, so
+ * that no cycle of loading and shearing creates energy (the rule of LAMMPS' mindlin/rescale). */
 typedef struct CALX_ID(calx_spring) {
   real x, y, z;                    /* m, in and out: the spring, odd under exchange of i and j */
   real fx, fy, fz;                 /* N, out: tangential force on i */
@@ -16,8 +16,8 @@ typedef struct CALX_ID(calx_spring) {
  *
  * vn         m/s, normal component of the velocity
  * kt         N/m, stiffness now; kt_before: one step earlier (read by the energy outputs only)
- * num, den   their ratio is (kt_before / kt)^2 or, where that exceeds 1, 1. Given apart, so that one division serves
- *            this and the turn of the spring; den = 0 empties the spring
+ * num, den   their ratio is (kt_before / kt)^2 where the force is kept, 1 where the displacement is. Given apart, so that
+ *            one division serves this and the turn of the spring; den = 0 empties the spring
  * ct         kg/s, dashpot; off while the spring slides, cut where spring and dashpot together exceed the limit
  * limit      N, Coulomb limit, not negative */
 CALX_FN void CALX_ID(calx_slide)(const CALX_ID(calx_contact) * c, const real vn, const real kt, const real kt_before,
@@ -63,9 +63,10 @@ CALX_FN void CALX_ID(calx_slide)(const CALX_ID(calx_contact) * c, const real vn,
   const real gx = kt * s->x;
   const real gy = kt * s->y;
   const real gz = kt * s->z;
-  /* Work by the trapezoid of old and new force, less what is stored more than before. The force before is that of the
-   * stiffer of the two springs on the carried displacement. */
-  const real k_old = calx_max(kt, kt_before);
+  /* Work by the trapezoid of old and new force, less what is stored more than before. The force before has the size it
+   * had and the direction of the carried spring. */
+  const real old2 = ox * ox + oy * oy + oz * oz;
+  const real k_old = old2 > tiny ? kt_before * calx_sqrt(length2 / calx_max(old2, tiny)) : R(0.0);
   const real work = R(0.5) * c->dt * ((k_old * ox + gx) * vx + (k_old * oy + gy) * vy + (k_old * oz + gz) * vz);
   s->elastic = R(0.5) * kt * (s->x * s->x + s->y * s->y + s->z * s->z);
   s->friction = work - (s->elastic - R(0.5) * kt_before * length2);
