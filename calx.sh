@@ -20,7 +20,7 @@ missing() { for name in $(names "$1"); do has "$name" || echo "$name"; done; }
 
 install_packages() {
   command -v dpkg-query >/dev/null || { echo "calx.sh: not a Debian system; see packages.txt for what is needed" >&2; return; }
-  local wanted root=() known=() name
+  local wanted needed name root=() known=()
   wanted=$(missing "$1" | tr '\n' ' ')
   [[ -z $wanted ]] && return
   echo "calx.sh: installing $wanted" >&2
@@ -30,11 +30,12 @@ install_packages() {
   fi
   "${root[@]}" apt-get update -qq >&2
   # A name that this system does not have at all can only be one of the tests' tools: for the build it is an error.
+  needed=" $(names run | tr '\n' ' ') "
   for name in $wanted; do
-    if [[ $1 == all ]] && ! names run | grep -qx -- "$name" && ! LC_ALL=C apt-cache policy "$name" | grep -q 'Candidate: [^(]'; then
-      echo "calx.sh: no package $name here; tests that need it are skipped" >&2
-    else
+    if [[ $needed == *" $name "* || $(LC_ALL=C apt-cache policy "$name") == *"Candidate: "[!\(]* ]]; then
       known+=("$name")
+    else
+      echo "calx.sh: no package $name here; tests that need it are skipped" >&2
     fi
   done
   [[ ${#known[@]} -eq 0 ]] ||
