@@ -174,6 +174,9 @@ int main(int argc, char** argv) {
   schema_command->callback(
       [&] { std::fputs(calx::plugin_schema_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
 
+  // "--plugin-path" may stand behind the id as well.
+  for (auto* command : {list_command, describe_command, schema_command}) command->fallthrough();
+
   calx::add_bench_command(app);
   return guarded(app, argc, argv);
 }
