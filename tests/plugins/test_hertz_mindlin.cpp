@@ -84,5 +84,6 @@ TEST_CASE("without rolling the law has three history columns and asks for no spi
 TEST_CASE("stable step shrinks as the overlap grows") {
   const Law law(kLib, {}, {{"restitution", 0.3}, {"friction", 0.5}});
   const double e_star = 1e7 / (2 * (1 - 0.0625)), m = 1e-5, r = 1e-3, d = 1e-5;
-  CHECK_NEAR(law.table().stable_dt(law.pair().data(), m, r, d), 0.17 * std::sqrt(m / (2 * e_star * std::sqrt(r * d))), 1e-12);
+  CHECK_NEAR(law.table().stable_dt(law.pair().data(), m, r, d), 0.17 * std::sqrt(m / (2 * e_star * std::sqrt(r * d))),
+             1e-12);
 }
