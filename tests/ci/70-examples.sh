@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every case below examples/ is listed in examples.txt and does what the list says: it runs to its end and writes its
-# report, or it passes calx check.
+# report, or it passes calx check. The first fill is also held against first_fill.py.
 source "$(dirname "$0")/common.sh"
 list=tests/ci/examples.txt
 status=0
@@ -29,6 +29,7 @@ while read -r command file options; do
       if ./calx.sh run "$file" -o "$out" --overwrite --quiet $options; then
         grep -q '"status": *"done"' "$out/summary.json" || fail "$file: summary.json does not say done"
         [[ -s $out/report.html ]] || fail "$file: no report.html"
+        [[ $file != */first_fill.json ]] || python3 tests/ci/first_fill.py "$out" || fail "$file: not as it must be"
       else
         fail "$file: calx run"
       fi
