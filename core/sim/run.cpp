@@ -91,6 +91,28 @@ std::string changed_places(const std::string& before, const std::string& now) {
   return out;
 }
 
+/// The case, whose materials that can meet all have a contact: without one they would pass through each other.
+CaseFile read_whole_case(const RunOptions& options) {
+  CaseFile file = read_case(options.case_path, options.overrides);
+  const CaseSettings& c = file.settings;
+  const auto need = [&](const std::string& a, const std::string& b, const std::string& who) {
+    for (const auto& contact : c.contacts)
+      if ((contact.between[0] == a && contact.between[1] == b) || (contact.between[0] == b && contact.between[1] == a)) return;
+    throw Error(Fault::settings, c.file + " /contacts: none is between \"" + a + "\" and \"" + b + "\", but " + who +
+                                     " can meet; add {\"between\": [\"" + a + "\", \"" + b + "\"], \"law\": ...}");
+  };
+  for (std::size_t k = 0; k < c.sources.size(); ++k) {
+    const SourceSettings& s = c.sources[k];
+    const bool single = s.count == 1 || s.positions.size() == 1;
+    if (!single) need(s.material, s.material, "particles of source \"" + s.name + "\"");
+    for (std::size_t m = 0; m < k; ++m)
+      need(c.sources[m].material, s.material, "particles of sources \"" + c.sources[m].name + "\" and \"" + s.name + "\"");
+    for (const auto& part : c.parts)
+      need(s.material, part.material, "particles of source \"" + s.name + "\" and part \"" + part.name + "\"");
+  }
+  return file;
+}
+
 class Run {
  public:
   Run(const RunOptions& options, CaseFile file)
@@ -103,16 +125,14 @@ class Run {
       facts_.status = "done";
       if (!at_end()) facts_.reason = "reached --until; go on with --resume";
       finish(true);
+      write_summary();
     } catch (const Error& e) {
       facts_.status = e.fault() == Fault::interrupted ? "interrupted" : "stopped";
       facts_.reason = e.what();
       log_error(e.what());
-      // What the run computed before is kept; a second failure must not hide the first.
-      try {
-        finish(e.fault() == Fault::interrupted);
-      } catch (const Error& second) {
-        log_error(second.what());
-      }
+      // What the run computed before is kept. A second failure hides neither the first nor the summary.
+      attempt([&] { finish(e.fault() == Fault::interrupted); });
+      attempt([&] { write_summary(); });
       close_log();
       throw Error(e.fault(), e.what() + last_checkpoint_text());
     }
@@ -259,7 +279,15 @@ class Run {
         if (sampled_at_[k] < sim_.time()) write_row(k);
     if (moved && frames_ && (!good || at_end()) && frame_at_ < sim_.time()) write_frame();
     if (good) save();
-    write_summary();
+  }
+
+  template <typename Action>
+  void attempt(Action action) {
+    try {
+      action();
+    } catch (const Error& second) {
+      log_error(second.what());
+    }
   }
 
   void report_progress(double now, double end) {
@@ -324,10 +352,10 @@ std::string run_folder(const RunOptions& options) {
   return p.string() + ".out";
 }
 
-std::string run_case(const RunOptions& options) { return Run(options, read_case(options.case_path, options.overrides)).go(); }
+std::string run_case(const RunOptions& options) { return Run(options, read_whole_case(options)).go(); }
 
 std::string check_case(const RunOptions& options) {
-  Simulation sim(read_case(options.case_path, options.overrides), options.simulation);
+  Simulation sim(read_whole_case(options), options.simulation);
   const CaseSettings& c = sim.settings();
   // The first step places what is there at the start, and finds what overlaps or does not fit.
   if (c.time.end > 0) sim.step();

@@ -171,7 +171,6 @@ int main(int argc, char** argv) {
   auto* plugin_command = app.add_subcommand("plugin", "list, describe and explain plugins");
   plugin_command->require_subcommand(1);
   std::vector<std::string> plugin_path;
-  plugin_command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
   std::string plugin_id;
   auto* list_command = plugin_command->add_subcommand("list", "every plugin found, and what was refused and why");
   list_command->callback(
@@ -184,6 +183,9 @@ int main(int argc, char** argv) {
   schema_command->add_option("id", plugin_id, "plugin id")->required();
   schema_command->callback(
       [&] { std::fputs(calx::plugin_schema_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
+
+  for (auto* command : {list_command, describe_command, schema_command})
+    command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
 
   calx::add_bench_command(app);
   return guarded(app, run_flags.json, argc, argv);
