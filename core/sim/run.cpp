@@ -27,9 +27,7 @@ using Json = nlohmann::json;
 /// Wall time between two summaries of a running run, s.
 constexpr double kSummaryInterval = 5;
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string clock_text(double s) {
   char text[40];
@@ -54,8 +52,8 @@ std::string utc_now() {
   return text;
 }
 
-/// Things done at multiples of an interval of simulated time, in the step that ends nearest to each. What is due follows
-/// from the time alone, so that a resumed run does it in the same steps.
+/// Things done at multiples of an interval of simulated time, in the step that ends nearest to each. What is due
+/// follows from the time alone, so that a resumed run does it in the same steps.
 struct Clock {
   double every = 0;          // s; 0: never
   std::uint64_t number = 0;  // of the next multiple
@@ -97,7 +95,8 @@ CaseFile read_whole_case(const RunOptions& options) {
   const CaseSettings& c = file.settings;
   const auto need = [&](const std::string& a, const std::string& b, const std::string& who) {
     for (const auto& contact : c.contacts)
-      if ((contact.between[0] == a && contact.between[1] == b) || (contact.between[0] == b && contact.between[1] == a)) return;
+      if ((contact.between[0] == a && contact.between[1] == b) || (contact.between[0] == b && contact.between[1] == a))
+        return;
     throw Error(Fault::settings, c.file + " /contacts: none is between \"" + a + "\" and \"" + b + "\", but " + who +
                                      " can meet; add {\"between\": [\"" + a + "\", \"" + b + "\"], \"law\": ...}");
   };
@@ -106,7 +105,8 @@ CaseFile read_whole_case(const RunOptions& options) {
     const bool single = s.count == 1 || s.positions.size() == 1;
     if (!single) need(s.material, s.material, "particles of source \"" + s.name + "\"");
     for (std::size_t m = 0; m < k; ++m)
-      need(c.sources[m].material, s.material, "particles of sources \"" + c.sources[m].name + "\" and \"" + s.name + "\"");
+      need(c.sources[m].material, s.material,
+           "particles of sources \"" + c.sources[m].name + "\" and \"" + s.name + "\"");
     for (const auto& part : c.parts)
       need(s.material, part.material, "particles of source \"" + s.name + "\" and part \"" + part.name + "\"");
   }
@@ -144,7 +144,8 @@ class Run {
  private:
   void open() {
     if (!o_.resume && !o_.overwrite && holds_run(dir_))
-      throw Error(Fault::files, dir_ + ": already holds a run; use " + (has_checkpoint(dir_) ? "--resume to go on, " : "") +
+      throw Error(Fault::files, dir_ + ": already holds a run; use " +
+                                    (has_checkpoint(dir_) ? "--resume to go on, " : "") +
                                     "--overwrite to start anew, or -o DIR");
     double at = -1;
     std::string note;
@@ -156,8 +157,9 @@ class Run {
       if (!changed.empty())
         note += (note.empty() ? "" : "; ") + ("the case is not the one of the checkpoint any more: " + changed);
     } else if (o_.overwrite) {
-      for (const char* name : {"frames", "series", "frames.pvd", "particles.h5", "checkpoint.h5", "checkpoint.previous.h5",
-                               "summary.json", "fields.json", "report.html", "run.log", "case.json"})
+      for (const char* name :
+           {"frames", "series", "frames.pvd", "particles.h5", "checkpoint.h5", "checkpoint.previous.h5", "summary.json",
+            "fields.json", "report.html", "run.log", "case.json"})
         fs::remove_all(dir_ + "/" + name);
     }
     std::error_code failed;
@@ -272,8 +274,8 @@ class Run {
   /// good: the state can be gone on from; after numbers went wrong the last checkpoint before stays.
   void finish(bool good) {
     const bool moved = sim_.step_count() > first_step_;
-    // The end of the case gets a row of every sensor and a frame, and so does a failure a frame. A pause gets neither, or
-    // the run gone on with would differ from one without a pause.
+    // The end of the case gets a row of every sensor and a frame, and so does a failure a frame. A pause gets neither,
+    // or the run gone on with would differ from one without a pause.
     if (moved && good && at_end())
       for (std::size_t k = 0; k < series_.size(); ++k)
         if (sampled_at_[k] < sim_.time()) write_row(k);
@@ -299,17 +301,19 @@ class Run {
     p.particle_steps_per_second = particle_steps_ / std::max(now - start_, 1e-9);
     p.seconds_left = p.share > 0 ? (now - start_) * (1 - p.share) / p.share : 0;
     char text[200];
-    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left", p.time,
-                  end, 100 * p.share, p.particles, p.particle_steps_per_second * 1e-6, clock_text(p.seconds_left).c_str());
+    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left",
+                  p.time, end, 100 * p.share, p.particles, p.particle_steps_per_second * 1e-6,
+                  clock_text(p.seconds_left).c_str());
     p.text = text;
     o_.progress(p);
   }
 
   std::string closing_line() const {
-    return facts_.status + (facts_.reason.empty() ? "" : " (" + facts_.reason + ")") + ": t = " + brief_quantity(sim_.time(), "s") +
-           ", " + std::to_string(sim_.step_count()) + " steps, " + std::to_string(sim_.world().particles().count()) +
-           " particles, " + brief_quantity(facts_.wall_seconds, "s") + " of wall time, " +
-           brief_quantity(facts_.rate * 1e-6, "1") + " M particle-steps/s";
+    return facts_.status + (facts_.reason.empty() ? "" : " (" + facts_.reason + ")") +
+           ": t = " + brief_quantity(sim_.time(), "s") + ", " + std::to_string(sim_.step_count()) + " steps, " +
+           std::to_string(sim_.world().particles().count()) + " particles, " +
+           brief_quantity(facts_.wall_seconds, "s") + " of wall time, " + brief_quantity(facts_.rate * 1e-6, "1") +
+           " M particle-steps/s";
   }
 
   void tell(const std::string& text) {
@@ -365,8 +369,9 @@ std::string check_case(const RunOptions& options) {
   line("");
   line("Time step " + brief_quantity(sim.time_step(), "s") + (c.time.step > 0 ? " (given)" : "") + "; limits:");
   for (const auto& l : sim.step_limits())
-    line("  " + std::string(l.binds ? "* " : "  ") + l.name + std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') +
-         brief_quantity(l.seconds, "s") + "  " + l.where + (l.binds ? "  <- binds" : ""));
+    line("  " + std::string(l.binds ? "* " : "  ") + l.name +
+         std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') + brief_quantity(l.seconds, "s") + "  " + l.where +
+         (l.binds ? "  <- binds" : ""));
   double mass = 0, particles = 0, spheres = 0;
   const auto& shapes = sim.world().particles().shapes;
   for (const auto& s : c.sources) {
@@ -377,7 +382,9 @@ std::string check_case(const RunOptions& options) {
     for (const auto& m : c.materials)
       if (m.name == s.material) density = m.density;
     const double each = density * volume * std::pow(s.size.kind == SizeSettings::Kind::fixed ? s.size.scale : 1.0, 3);
-    const double n = s.count > 0 ? static_cast<double>(s.count) : s.mass > 0 ? s.mass / each : static_cast<double>(s.positions.size());
+    const double n = s.count > 0  ? static_cast<double>(s.count)
+                     : s.mass > 0 ? s.mass / each
+                                  : static_cast<double>(s.positions.size());
     mass += n * each;
     particles += n;
     spheres += n * static_cast<double>(members);
@@ -419,7 +426,8 @@ std::string check_case(const RunOptions& options) {
          (faults.empty() ? "" : " (" + faults + ")"));
   }
   line("Plugins:");
-  for (const auto& p : sim.provenance()) line("  " + p.id + " " + p.version + "  sha256 " + p.sha256.substr(0, 12) + "  " + p.path);
+  for (const auto& p : sim.provenance())
+    line("  " + p.id + " " + p.version + "  sha256 " + p.sha256.substr(0, 12) + "  " + p.path);
   if (!c.assumptions.empty()) line("Assumptions:");
   for (const auto& a : c.assumptions) line("  - " + a);
   return out;

@@ -11,8 +11,8 @@
 namespace calx {
 
 struct RunProgress {
-  double time = 0, end = 0;              // s, simulated
-  double share = 0;                      // 0 to 1, of what this process has to do
+  double time = 0, end = 0;  // s, simulated
+  double share = 0;          // 0 to 1, of what this process has to do
   std::size_t particles = 0;
   double particle_steps_per_second = 0;  // since this process began
   double seconds_left = 0;               // wall time
@@ -37,8 +37,8 @@ struct RunOptions {
 /// The folder a run of that case writes to.
 std::string run_folder(const RunOptions& options);
 
-/// Runs the case. Returns the folder. Throws Error; whatever was written before stays, and summary.json says how the run
-/// ended ("done", "interrupted", "stopped").
+/// Runs the case. Returns the folder. Throws Error; whatever was written before stays, and summary.json says how the
+/// run ended ("done", "interrupted", "stopped").
 std::string run_case(const RunOptions& options);
 
 /// What `calx check` prints: materials, limits of the time step, particles, memory, cost, device plan, plugins.
