@@ -118,9 +118,15 @@ void write_checkpoint(const std::string& dir, const std::function<void(StateWrit
     writer.finish();
     file.commit(true);
   }
-  // Between the two renames the older checkpoint stands under its second name.
   try {
-    if (file_exists(path)) rename_file(path, previous);
+    if (file_exists(path)) {
+      // A second name for the older one first, so that there is a checkpoint.h5 at every moment. Where the file system
+      // has no links, the older one stands under its second name only between the two renames.
+      const std::string second = previous + ".partial";
+      ::unlink(second.c_str());
+      const bool linked = ::link(path.c_str(), second.c_str()) == 0;
+      rename_file(linked ? second : path, previous);
+    }
     rename_file(partial, path);
   } catch (...) {
     ::unlink(partial.c_str());

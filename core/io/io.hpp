@@ -29,6 +29,8 @@ class SeriesFile {
   SeriesFile(const std::string& path, const std::vector<std::string>& columns, double resume_at);
   ~SeriesFile();
   void write(double time, const std::vector<double>& values);
+  /// Of the last row kept on resuming, without its time; empty when there is none.
+  const std::vector<double>& last_values() const;
 
  private:
   struct Impl;

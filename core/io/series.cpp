@@ -39,6 +39,23 @@ std::size_t kept_length(const std::string& text, std::size_t header, double resu
   return kept;
 }
 
+/// Values of the last row in the first size bytes of text, without its time.
+std::vector<double> last_row(const std::string& text, std::size_t header, std::size_t size) {
+  std::vector<double> out;
+  if (size <= header) return out;
+  const char* at = text.data() + text.rfind('\n', size - 2) + 1;
+  const char* end = text.data() + size - 1;
+  while (at < end) {
+    double value = 0;
+    const auto parsed = std::from_chars(at, end, value);
+    if (parsed.ec != std::errc()) return {};
+    out.push_back(value);
+    at = parsed.ptr + 1;
+  }
+  if (!out.empty()) out.erase(out.begin());
+  return out;
+}
+
 }  // namespace
 
 struct SeriesFile::Impl {
@@ -46,6 +63,7 @@ struct SeriesFile::Impl {
   std::size_t column_count = 0;
   int descriptor = -1;
   std::uint64_t size = 0;
+  std::vector<double> last;
 
   ~Impl() {
     if (descriptor >= 0) ::close(descriptor);
@@ -79,6 +97,7 @@ SeriesFile::SeriesFile(const std::string& path, const std::vector<std::string>& 
                                       "\"; resume with the same sensors, or move the file away");
       }
       impl_->size = kept_length(text, end + 1, resume_at);
+      impl_->last = last_row(text, end + 1, impl_->size);
     }
   }
   impl_->descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
@@ -89,6 +108,8 @@ SeriesFile::SeriesFile(const std::string& path, const std::vector<std::string>& 
 }
 
 SeriesFile::~SeriesFile() = default;
+
+const std::vector<double>& SeriesFile::last_values() const { return impl_->last; }
 
 void SeriesFile::write(double time, const std::vector<double>& values) {
   if (values.size() != impl_->column_count) {

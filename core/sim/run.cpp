@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -21,6 +22,10 @@ namespace calx {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Wall time between two summaries of a running run, s.
+constexpr double kSummaryInterval = 5;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -31,8 +36,10 @@ std::string clock_text(double s) {
     std::snprintf(text, sizeof text, "%ld d %02ld h", whole / 86400, whole % 86400 / 3600);
   else if (whole >= 3600)
     std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole % 3600 / 60);
+  else if (whole >= 60)
+    std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
   else
-    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
+    std::snprintf(text, sizeof text, "%ld s", whole);
   return text;
 }
 
@@ -45,17 +52,66 @@ std::string utc_now() {
   return text;
 }
 
-/// Things done at multiples of an interval of simulated time. The next one follows from the time alone, so a resumed
-/// run goes on where it stood.
+/// Things done at multiples of an interval of simulated time, in the step that ends nearest to each. What is due
+/// follows from the time alone, so that a resumed run does it in the same steps.
 struct Clock {
-  double every = 0;
-  double next = 0;
-  void resume(double t) { next = every > 0 ? (std::floor(t / every + 1e-9) + 1) * every : 1e300; }
-  bool due(double t, double dt) const { return every > 0 && t >= next - 0.5 * dt; }
+  double every = 0;          // s; 0: never
+  std::uint64_t number = 0;  // of the next multiple
+  bool due(double t, double dt) const { return every > 0 && static_cast<double>(number) * every <= t + 0.5 * dt; }
+  /// Everything up to time t is done, before a resume or now.
   void done(double t, double dt) {
-    while (next <= t + 0.5 * dt) next += every;
+    if (every > 0) number = std::max(number, static_cast<std::uint64_t>((t + 0.5 * dt) / every));
+    while (due(t, dt)) ++number;
   }
 };
+
+bool has_checkpoint(const std::string& dir) {
+  return fs::exists(dir + "/checkpoint.h5") || fs::exists(dir + "/checkpoint.previous.h5");
+}
+
+/// True when the folder holds something that a new run would throw away.
+bool holds_run(const std::string& dir) {
+  if (has_checkpoint(dir)) return true;
+  if (!fs::exists(dir + "/summary.json")) return false;
+  const Json summary = Json::parse(read_text(dir + "/summary.json"), nullptr, false);
+  // A case that failed before its first step is corrected and run again.
+  return !summary.is_object() || summary.value("steps", Json(1)) != Json(0);
+}
+
+/// Where two cases differ, as JSON pointers: "/time/end, /seed"; empty: nowhere.
+std::string changed_places(const std::string& before, const std::string& now) {
+  std::string out;
+  std::size_t count = 0;
+  constexpr std::size_t kShown = 5;
+  for (const auto& change : Json::diff(Json::parse(before), Json::parse(now)))
+    if (++count <= kShown) out += (out.empty() ? "" : ", ") + change["path"].get<std::string>();
+  if (count > kShown) out += " and " + std::to_string(count - kShown) + " more";
+  return out;
+}
+
+/// The case, whose materials that can meet all have a contact: without one they would pass through each other.
+CaseFile read_whole_case(const RunOptions& options) {
+  CaseFile file = read_case(options.case_path, options.overrides);
+  const CaseSettings& c = file.settings;
+  const auto need = [&](const std::string& a, const std::string& b, const std::string& who) {
+    for (const auto& contact : c.contacts)
+      if ((contact.between[0] == a && contact.between[1] == b) || (contact.between[0] == b && contact.between[1] == a))
+        return;
+    throw Error(Fault::settings, c.file + " /contacts: none is between \"" + a + "\" and \"" + b + "\", but " + who +
+                                     " can meet; add {\"between\": [\"" + a + "\", \"" + b + "\"], \"law\": ...}");
+  };
+  for (std::size_t k = 0; k < c.sources.size(); ++k) {
+    const SourceSettings& s = c.sources[k];
+    const bool single = s.count == 1 || s.positions.size() == 1;
+    if (!single) need(s.material, s.material, "particles of source \"" + s.name + "\"");
+    for (std::size_t m = 0; m < k; ++m)
+      need(c.sources[m].material, s.material,
+           "particles of sources \"" + c.sources[m].name + "\" and \"" + s.name + "\"");
+    for (const auto& part : c.parts)
+      need(s.material, part.material, "particles of source \"" + s.name + "\" and part \"" + part.name + "\"");
+  }
+  return file;
+}
 
 class Run {
  public:
@@ -66,33 +122,41 @@ class Run {
     open();
     try {
       loop();
-      facts_.status = sim_.finished() || o_.until >= 0 ? "done" : "interrupted";
+      facts_.status = "done";
+      if (!at_end()) facts_.reason = "reached --until; go on with --resume";
       finish(true);
+      write_summary();
     } catch (const Error& e) {
       facts_.status = e.fault() == Fault::interrupted ? "interrupted" : "stopped";
       facts_.reason = e.what();
       log_error(e.what());
-      // What the run computed before is kept; a second failure must not hide the first.
-      try {
-        finish(e.fault() == Fault::interrupted);
-      } catch (const Error& second) {
-        log_error(second.what());
-      }
+      // What the run computed before is kept. A second failure hides neither the first nor the summary.
+      attempt([&] { finish(e.fault() == Fault::interrupted); });
+      attempt([&] { write_summary(); });
       close_log();
       throw Error(e.fault(), e.what() + last_checkpoint_text());
     }
+    tell(closing_line());
     close_log();
-    if (facts_.status == "interrupted") throw Error(Fault::interrupted, "interrupted" + last_checkpoint_text());
     return dir_;
   }
 
  private:
   void open() {
-    const bool held = fs::exists(dir_ + "/summary.json") || fs::exists(dir_ + "/checkpoint.h5");
-    if (held && !o_.resume && !o_.overwrite)
-      throw Error(Fault::files,
-                  dir_ + ": already holds a run; use --resume to go on, --overwrite to start anew, or -o DIR");
-    if (o_.overwrite && !o_.resume) {
+    if (!o_.resume && !o_.overwrite && holds_run(dir_))
+      throw Error(Fault::files, dir_ + ": already holds a run; use " +
+                                    (has_checkpoint(dir_) ? "--resume to go on, " : "") +
+                                    "--overwrite to start anew, or -o DIR");
+    double at = -1;
+    std::string note;
+    if (o_.resume) {
+      const auto state = read_checkpoint(dir_, &note);
+      sim_.load(*state);
+      at = checkpoint_time_ = sim_.time();
+      const std::string changed = changed_places(state->get_text("case"), resolved_);
+      if (!changed.empty())
+        note += (note.empty() ? "" : "; ") + ("the case is not the one of the checkpoint any more: " + changed);
+    } else if (o_.overwrite) {
       for (const char* name :
            {"frames", "series", "frames.pvd", "particles.h5", "checkpoint.h5", "checkpoint.previous.h5", "summary.json",
             "fields.json", "report.html", "run.log", "case.json"})
@@ -105,15 +169,8 @@ class Run {
     log.file = dir_ + "/run.log";
     log.append = o_.resume;
     open_log(log);
-    double at = -1;
-    if (o_.resume) {
-      std::string note;
-      const auto state = read_checkpoint(dir_, &note);
-      if (!note.empty()) say(note);
-      sim_.load(*state);
-      at = sim_.time();
-      say("resumed at t = " + brief_quantity(at, "s"));
-    }
+    if (!note.empty()) say(note);
+    if (o_.resume) say("resumed at t = " + brief_quantity(at, "s"));
     write_text_atomically(dir_ + "/case.json", resolved_);
     facts_.case_sha256 = sha256(resolved_);
     facts_.started = utc_now();
@@ -122,24 +179,28 @@ class Run {
     for (auto& s : sim_.sensors()) {
       series_.push_back(std::make_unique<SeriesFile>(dir_ + "/series/" + s->name() + ".csv", s->columns(), at));
       sample_.push_back({s->every(), 0});
-      if (at >= 0) sample_.back().resume(at);
-      facts_.last.emplace_back();
+      facts_.last.push_back(series_.back()->last_values());
     }
+    sampled_at_.assign(series_.size(), -1);
     frames_clock_ = {out.frames_every, 0};
-    checkpoint_clock_ = {out.checkpoint_every, out.checkpoint_every};
+    checkpoint_clock_ = {out.checkpoint_every, 1};
     if (at >= 0) {
-      frames_clock_.resume(at);
-      checkpoint_clock_.resume(at);
+      for (auto& clock : sample_) clock.done(at, sim_.time_step());
+      frames_clock_.done(at, sim_.time_step());
+      checkpoint_clock_.done(at, sim_.time_step());
     }
     if (out.frames_every > 0) frames_ = std::make_unique<FrameWriter>(dir_, out.particles_h5, at);
     start_ = last_progress_ = last_checkpoint_ = seconds();
+    // The first soon, so that a report of a run just started finds something.
+    next_summary_ = start_ + 0.1 * kSummaryInterval;
+    first_time_ = sim_.time();
+    first_step_ = sim_.step_count();
   }
 
   void loop() {
     const auto& out = sim_.settings().output;
     const double dt = sim_.time_step();
     const double end = o_.until >= 0 ? std::min(o_.until, sim_.settings().time.end) : sim_.settings().time.end;
-    first_time_ = sim_.time();
     while (!sim_.finished() && sim_.time() < end - 0.5 * dt) {
       sim_.step();
       particle_steps_ += static_cast<double>(sim_.world().particles().count());
@@ -147,7 +208,7 @@ class Run {
       for (auto& m : sim_.take_messages()) say(m);
       record(t, dt);
       if (frames_ && frames_clock_.due(t, dt)) {
-        frames_->write(sim_.world());
+        write_frame();
         frames_clock_.done(t, dt);
       }
       if (checkpoint_clock_.every > 0 && checkpoint_clock_.due(t, dt)) {
@@ -162,10 +223,11 @@ class Run {
         report_progress(now, end);
         last_progress_ = now;
       }
-      if (out.checkpoint_every_wall > 0 && now - last_checkpoint_ > out.checkpoint_every_wall) {
-        save();
+      if (out.checkpoint_every_wall > 0 && now - last_checkpoint_ > out.checkpoint_every_wall) save();
+      if (now > next_summary_) {
         facts_.status = "running";
         write_summary();
+        next_summary_ = seconds() + kSummaryInterval;
       }
     }
   }
@@ -175,11 +237,23 @@ class Run {
       Sensor& s = *sim_.sensors()[k];
       const bool due = sample_[k].due(t, dt);
       if (!due && !s.row_due()) continue;
-      facts_.last[k] = s.sample(sim_.world());
-      series_[k]->write(t, facts_.last[k]);
+      write_row(k);
       if (due) sample_[k].done(t, dt);
     }
   }
+
+  void write_row(std::size_t k) {
+    facts_.last[k] = sim_.sensors()[k]->sample(sim_.world());
+    series_[k]->write(sim_.time(), facts_.last[k]);
+    sampled_at_[k] = sim_.time();
+  }
+
+  void write_frame() {
+    frames_->write(sim_.world());
+    frame_at_ = sim_.time();
+  }
+
+  bool at_end() const { return sim_.finished(); }
 
   void save() {
     write_checkpoint(dir_, [&](StateWriter& out) { sim_.save(out); });
@@ -197,38 +271,62 @@ class Run {
     write_text_atomically(dir_ + "/summary.json", summary_json(sim_, facts_));
   }
 
-  /// checkpoint: false after numbers went wrong, so that the last good one stays.
-  void finish(bool checkpoint) {
-    const double t = sim_.time(), dt = sim_.time_step();
-    for (std::size_t k = 0; k < sim_.sensors().size(); ++k) {
-      if (!checkpoint || facts_.status == "interrupted") break;
-      if (sample_[k].next > t + 0.5 * dt && sample_[k].next - sample_[k].every > t - 0.5 * dt) continue;
-      facts_.last[k] = sim_.sensors()[k]->sample(sim_.world());
-      series_[k]->write(t, facts_.last[k]);
+  /// good: the state can be gone on from; after numbers went wrong the last checkpoint before stays.
+  void finish(bool good) {
+    const bool moved = sim_.step_count() > first_step_;
+    // The end of the case gets a row of every sensor and a frame, and so does a failure a frame. A pause gets neither,
+    // or the run gone on with would differ from one without a pause.
+    if (moved && good && at_end())
+      for (std::size_t k = 0; k < series_.size(); ++k)
+        if (sampled_at_[k] < sim_.time()) write_row(k);
+    if (moved && frames_ && (!good || at_end()) && frame_at_ < sim_.time()) write_frame();
+    if (good) save();
+  }
+
+  template <typename Action>
+  void attempt(Action action) {
+    try {
+      action();
+    } catch (const Error& second) {
+      log_error(second.what());
     }
-    if (checkpoint) save();
-    if (frames_ && (facts_.status != "interrupted") && frames_clock_.next - frames_clock_.every < t - 0.5 * dt)
-      frames_->write(sim_.world());
-    write_summary();
   }
 
   void report_progress(double now, double end) {
-    const double t = sim_.time(), share = (t - first_time_) / std::max(end - first_time_, 1e-300);
-    const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
+    RunProgress p;
+    p.time = sim_.time();
+    p.end = end;
+    p.share = (p.time - first_time_) / std::max(end - first_time_, 1e-300);
+    p.particles = sim_.world().particles().count();
+    p.particle_steps_per_second = particle_steps_ / std::max(now - start_, 1e-9);
+    p.seconds_left = p.share > 0 ? (now - start_) * (1 - p.share) / p.share : 0;
     char text[200];
-    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left", t,
-                  end, 100 * share, sim_.world().particles().count(),
-                  particle_steps_ / std::max(now - start_, 1e-9) * 1e-6, clock_text(left).c_str());
-    o_.progress(text);
+    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left",
+                  p.time, end, 100 * p.share, p.particles, p.particle_steps_per_second * 1e-6,
+                  clock_text(p.seconds_left).c_str());
+    p.text = text;
+    o_.progress(p);
   }
 
-  void say(const std::string& text) {
+  std::string closing_line() const {
+    return facts_.status + (facts_.reason.empty() ? "" : " (" + facts_.reason + ")") +
+           ": t = " + brief_quantity(sim_.time(), "s") + ", " + std::to_string(sim_.step_count()) + " steps, " +
+           std::to_string(sim_.world().particles().count()) + " particles, " +
+           brief_quantity(facts_.wall_seconds, "s") + " of wall time, " + brief_quantity(facts_.rate * 1e-6, "1") +
+           " M particle-steps/s";
+  }
+
+  void tell(const std::string& text) {
     log_info(text);
-    facts_.notes.push_back(text);
     if (o_.message) o_.message(text);
+  }
+  void say(const std::string& text) {
+    facts_.notes.push_back(text);
+    tell(text);
   }
 
   std::string last_checkpoint_text() const {
+    if (sim_.step_count() == 0) return "";
     if (checkpoint_time_ < 0) return "; no checkpoint was written";
     return "; last checkpoint at t = " + brief_quantity(checkpoint_time_, "s") + ", go on with --resume";
   }
@@ -241,7 +339,11 @@ class Run {
   std::vector<Clock> sample_;
   Clock frames_clock_, checkpoint_clock_;
   std::unique_ptr<FrameWriter> frames_;
-  double start_ = 0, last_progress_ = 0, last_checkpoint_ = 0, checkpoint_time_ = -1, first_time_ = 0;
+  double start_ = 0, last_progress_ = 0, last_checkpoint_ = 0, checkpoint_time_ = -1, first_time_ = 0,
+         next_summary_ = 0;
+  std::vector<double> sampled_at_;  // time of the last row of each sensor, s
+  double frame_at_ = -1;            // time of the last frame, s
+  std::uint64_t first_step_ = 0;
   double particle_steps_ = 0;
 };
 
@@ -254,13 +356,13 @@ std::string run_folder(const RunOptions& options) {
   return p.string() + ".out";
 }
 
-std::string run_case(const RunOptions& options) {
-  return Run(options, read_case(options.case_path, options.overrides)).go();
-}
+std::string run_case(const RunOptions& options) { return Run(options, read_whole_case(options)).go(); }
 
 std::string check_case(const RunOptions& options) {
-  Simulation sim(read_case(options.case_path, options.overrides), options.simulation);
+  Simulation sim(read_whole_case(options), options.simulation);
   const CaseSettings& c = sim.settings();
+  // The first step places what is there at the start, and finds what overlaps or does not fit.
+  if (c.time.end > 0) sim.step();
   std::string out;
   auto line = [&](const std::string& text) { out += text + "\n"; };
   line(c.title.empty() ? c.file : c.title);
@@ -295,14 +397,20 @@ std::string check_case(const RunOptions& options) {
   const int threads = options.simulation.threads > 0 ? options.simulation.threads : omp_get_max_threads();
   line("Size: " + brief_quantity(mass, "kg") + ", " + format_number(std::round(particles)) + " particles, " +
        format_number(std::round(spheres)) + " spheres, " + format_number(std::round(steps)) + " steps, " +
-       format_number(std::round(particles * steps / 1e6) * 1e6) + " particle-steps");
-  line("Memory: about " + brief_quantity(std::round(spheres * 600 / 1e6), "1") + " MB");
-  line("Cost: about " + clock_text(work / (kSphereStepsPerCore * threads)) + " on " + std::to_string(threads) +
+       brief_quantity(particles * steps, "1") + " particle-steps");
+  const double megabytes = std::round(spheres * 600 / 1e6), cost = work / (kSphereStepsPerCore * threads);
+  line("Memory: " + (megabytes < 1 ? "below 1" : "about " + brief_quantity(megabytes, "1")) + " MB");
+  line("Cost: " + (cost < 1 ? "below 1 s" : "about " + clock_text(cost)) + " on " + std::to_string(threads) +
        " threads at " + format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
   line("Device: cpu, double precision, " + std::to_string(threads) + " threads; every plugin runs there");
-  line("Materials:");
+  line("Materials (SI units):");
   for (const auto& m : c.materials) {
-    line("  " + m.name + (m.density > 0 ? ", density " + brief_quantity(m.density, "kg/m^3") : ""));
+    std::string text;
+    const Json properties = Json::parse(m.properties.json);
+    for (const auto& item : properties.items())
+      text += (text.empty() ? " " : ", ") + item.key() + " " +
+              (item.value().is_number() ? brief_quantity(item.value().get<double>(), "1") : item.value().dump());
+    line("  " + m.name + ":" + text);
   }
   line("Contacts:");
   for (const auto& contact : c.contacts)

@@ -10,6 +10,15 @@
 
 namespace calx {
 
+struct RunProgress {
+  double time = 0, end = 0;  // s, simulated
+  double share = 0;          // 0 to 1, of what this process has to do
+  std::size_t particles = 0;
+  double particle_steps_per_second = 0;  // since this process began
+  double seconds_left = 0;               // wall time
+  std::string text;                      // the same in one line
+};
+
 struct RunOptions {
   std::string case_path;
   std::string out;  // empty: the case's path without .json, with .out
@@ -19,8 +28,8 @@ struct RunOptions {
   bool resume = false, overwrite = false;
   /// Set by a signal handler: the run writes a checkpoint and ends with Fault::interrupted.
   const std::atomic<bool>* stop = nullptr;
-  /// Called a few times a second with one line of progress; empty: none.
-  std::function<void(const std::string& line)> progress;
+  /// Called a few times a second; empty: never.
+  std::function<void(const RunProgress&)> progress;
   /// Events and notes, as they happen.
   std::function<void(const std::string& line)> message;
 };

@@ -18,6 +18,8 @@ namespace {
 constexpr double kRainInterval = 2e-3;
 /// Tries to find a free place for one particle of a rate source before it waits for the next delivery.
 constexpr int kTries = 60;
+/// Share of the radius by which given particles may overlap at the start: a settled bed does.
+constexpr double kAcceptedOverlap = 0.05;
 
 }  // namespace
 
@@ -108,6 +110,7 @@ std::vector<Seed> Source::make(double t, const Obstacles& obstacles) {
   std::vector<Seed> out;
   if (!settings_.file.empty() || !settings_.positions.empty()) {
     out = given();
+    for (std::size_t k = 0; k < out.size(); ++k) check_free(out[k], k, obstacles);
     for (const auto& seed : out) delivered_ += mass_of(seed.scale);
     delivered_count_ += out.size();
     exhausted_ = true;
@@ -119,6 +122,19 @@ std::vector<Seed> Source::make(double t, const Obstacles& obstacles) {
     exhausted_ = true;
   }
   return out;
+}
+
+void Source::check_free(const Seed& seed, std::size_t number, const Obstacles& obstacles) const {
+  const Quat q = normalized(seed.turn) * shape_->frame;
+  for (const auto& m : shape_->members) {
+    const Vec3 x = seed.x + rotate(q, seed.scale * m.at);
+    if (!obstacles.free(x, (1 - kAcceptedOverlap) * seed.scale * m.radius))
+      throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particle number " + std::to_string(number) +
+                                       " at (" + brief_quantity(seed.x.x, "1") + ", " + brief_quantity(seed.x.y, "1") +
+                                       ", " + brief_quantity(seed.x.z, "1") +
+                                       ") m overlaps a part, or a particle of another source, by more than 5 % of its "
+                                       "radius at the start; move it away");
+  }
 }
 
 std::vector<Seed> Source::given() const {
@@ -158,7 +174,7 @@ std::vector<Seed> Source::given() const {
             for (const auto& s : spheres[k])
               for (const auto& o : spheres[other]) {
                 const double overlap = s.second + o.second - norm(s.first - o.first);
-                if (overlap > 0.05 * std::min(s.second, o.second))
+                if (overlap > kAcceptedOverlap * std::min(s.second, o.second))
                   throw Error(Fault::settings,
                               file_ + " " + settings_.pointer + ": particles number " + std::to_string(other) +
                                   " and " + std::to_string(k) + " overlap by " + brief_quantity(overlap, "m") +

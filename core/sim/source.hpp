@@ -60,6 +60,7 @@ class Source {
   double draw_scale();
   Quat draw_turn();
   Vec3 draw_point();
+  void check_free(const Seed& seed, std::size_t number, const Obstacles& obstacles) const;
   double mass_of(double scale) const;
   bool wants_more(double next_mass) const;
   std::vector<Seed> given() const;

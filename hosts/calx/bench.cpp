@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/random.hpp"
 #include "base/version.hpp"
+#include "options.hpp"
 #include "sim/simulation.hpp"
 #include "sim/source.hpp"
 
@@ -213,11 +214,11 @@ void add_bench_command(CLI::App& app) {
   b->name = "settled";
   command->add_option("name", b->name, "settled or pour")->check(CLI::IsMember({"settled", "pour"}));
   command->add_option("--particles", b->particles, "number of spheres, in tiles of the start state")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--threads", b->threads, "threads")->check(CLI::PositiveNumber);
-  command->add_option("--steps", b->steps, "timed steps")->check(CLI::PositiveNumber);
-  command->add_option("--warm-up", b->warm_up, "steps before timing")->check(CLI::NonNegativeNumber);
-  command->add_option("--rolling", b->rolling, "rolling friction, 0 for none")->check(CLI::NonNegativeNumber);
+      ->check(whole_above_zero());
+  command->add_option("--threads", b->threads, "threads")->check(whole_above_zero());
+  command->add_option("--steps", b->steps, "timed steps")->check(whole_above_zero());
+  command->add_option("--warm-up", b->warm_up, "steps before timing")->check(whole_number());
+  command->add_option("--rolling", b->rolling, "rolling friction, 0 for none")->check(zero_or_more());
   command->add_option("--start", b->start, "CSV with the settled tile of 50 x 50 mm (default: settle one)");
   command->add_option("--save", b->save, "write the settled tile to this CSV");
   command->add_flag("--json", b->json, "one JSON line");

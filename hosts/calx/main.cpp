@@ -12,6 +12,7 @@
 #include "base/version.hpp"
 #include "bench.hpp"
 #include "calx/abi.h"
+#include "options.hpp"
 #include "plugin/plugin.hpp"
 #include "progress.hpp"
 #include "report/report.hpp"
@@ -44,10 +45,11 @@ struct CaseFlags {
   void add_common(CLI::App& app) {
     app.add_option("case", run.case_path, "case file (JSON)")->required();
     app.add_option("--set", set, "override, repeatable: /json/pointer=value");
-    app.add_option("--threads", run.simulation.threads, "threads (default: all cores)")->check(CLI::PositiveNumber);
+    app.add_option("--threads", run.simulation.threads, "threads (default: all cores)")
+        ->check(calx::whole_above_zero());
     app.add_option("--device", device, "auto or cpu");
     app.add_option("--precision", precision, "double");
-    app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(CLI::NonNegativeNumber);
+    app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(calx::whole_number());
     app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
   }
   calx::RunOptions options() {
@@ -65,7 +67,7 @@ struct CaseFlags {
 int run(CaseFlags& flags) {
   calx::RunOptions options = flags.options();
   calx::Progress progress(flags.quiet, flags.json);
-  options.progress = [&](const std::string& line) { progress.line(line); };
+  options.progress = [&](const calx::RunProgress& p) { progress.show(p); };
   options.message = [&](const std::string& line) { progress.message(line); };
   options.stop = &stop_requested;
   std::signal(SIGINT, on_signal);
@@ -93,22 +95,32 @@ int run(CaseFlags& flags) {
   return 0;
 }
 
-int guarded(CLI::App& app, int argc, char** argv) {
+/// An error on stderr, as text or as a JSON line.
+int fail(bool json, int code, const std::string& message) {
+  if (json)
+    std::fprintf(stderr, "{\"event\": \"error\", \"exit_code\": %d, \"message\": %s}\n", code,
+                 calx::json_string(message).c_str());
+  else
+    std::fprintf(stderr, "calx: %s\n", message.c_str());
+  return code;
+}
+
+int guarded(CLI::App& app, const bool& json, int argc, char** argv) {
   try {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? 0 : static_cast<int>(calx::Fault::usage);
+    if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+    return fail(json, static_cast<int>(calx::Fault::usage), calx::usage_text(app, e, argc, argv));
   } catch (const calx::Error& e) {
-    std::fprintf(stderr, "calx: %s\n", e.what());
-    return e.exit_code();
+    return fail(json, e.exit_code(), e.what());
   } catch (const std::filesystem::filesystem_error& e) {
-    std::fprintf(stderr, "calx: %s\n", e.what());
-    return static_cast<int>(calx::Fault::files);
+    return fail(json, static_cast<int>(calx::Fault::files), e.what());
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "calx: out of memory; the case needs more than this machine has (see calx check)\n");
-    return static_cast<int>(calx::Fault::numerics);
+    return fail(json, static_cast<int>(calx::Fault::numerics),
+                "out of memory; the case needs more than this machine has (see calx check)");
+  } catch (const std::exception& e) {
+    return fail(json, 1, std::string("a fault of calx itself, please report it: ") + e.what());
   }
 }
 
@@ -122,7 +134,7 @@ int main(int argc, char** argv) {
     setenv("GOMP_SPINCOUNT", "10000", 1);
     execv("/proc/self/exe", argv);
   }
-  CLI::App app{"Calx: how powder fills a canister, by discrete elements"};
+  CLI::App app{"Calx: how powder fills a canister, by discrete elements", "calx"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("calx ") + calx::version() + " (" + calx::git_revision() + "), ABI " +
                                         std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) +
@@ -133,7 +145,7 @@ int main(int argc, char** argv) {
   run_flags.add_common(*run_command);
   run_command->add_option("-o,--out", run_flags.run.out, "folder of the results (default: CASE.out)");
   run_command->add_option("--until", run_flags.run.until, "stop at this simulated time, s")
-      ->check(CLI::NonNegativeNumber);
+      ->check(calx::zero_or_more());
   run_command->add_flag("--resume", run_flags.run.resume, "go on from the last checkpoint");
   run_command->add_flag("--overwrite", run_flags.run.overwrite, "replace an earlier run in the folder");
   run_command->add_flag("--quiet", run_flags.quiet, "no progress");
@@ -163,7 +175,6 @@ int main(int argc, char** argv) {
   auto* plugin_command = app.add_subcommand("plugin", "list, describe and explain plugins");
   plugin_command->require_subcommand(1);
   std::vector<std::string> plugin_path;
-  plugin_command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
   std::string plugin_id;
   auto* list_command = plugin_command->add_subcommand("list", "every plugin found, and what was refused and why");
   list_command->callback(
@@ -178,9 +189,12 @@ int main(int argc, char** argv) {
   schema_command->callback(
       [&] { std::fputs(calx::plugin_schema_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
 
+  for (auto* command : {list_command, describe_command, schema_command})
+    command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+
   // "--plugin-path" may stand behind the id as well.
   for (auto* command : {list_command, describe_command, schema_command}) command->fallthrough();
 
   calx::add_bench_command(app);
-  return guarded(app, argc, argv);
+  return guarded(app, run_flags.json, argc, argv);
 }

@@ -7,47 +7,63 @@
 #include <cstdio>
 #include <string>
 
+#include "sim/run.hpp"
+
 namespace calx {
+
+/// Text as a JSON string, quotes included.
+inline std::string json_string(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(c));
+      out += code;
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
 
 class Progress {
  public:
   Progress(bool quiet, bool json) : quiet_(quiet), json_(json), terminal_(!json && isatty(2)) {}
-  void line(const std::string& text) {
+  void show(const RunProgress& p) {
     if (quiet_) return;
     const auto now = std::chrono::steady_clock::now();
     if (!terminal_ && now - last_ < std::chrono::seconds(5)) return;
     last_ = now;
     if (json_) {
-      std::fprintf(stderr, "{\"progress\": \"%s\"}\n", escaped(text).c_str());
+      std::fprintf(stderr,
+                   "{\"event\": \"progress\", \"time\": %.9g, \"end\": %.9g, \"share\": %.4f, \"particles\": %zu, "
+                   "\"particle_steps_per_second\": %.6g, \"seconds_left\": %.6g}\n",
+                   p.time, p.end, p.share, p.particles, p.particle_steps_per_second, p.seconds_left);
     } else if (terminal_) {
-      std::fprintf(stderr, "\r\033[K%s", text.c_str());
+      std::fprintf(stderr, "\r\033[K%s", p.text.c_str());
       open_ = true;
     } else {
-      std::fprintf(stderr, "%s\n", text.c_str());
+      std::fprintf(stderr, "%s\n", p.text.c_str());
     }
   }
   void message(const std::string& text) {
     if (quiet_) return;
     end();
     if (json_)
-      std::fprintf(stderr, "{\"message\": \"%s\"}\n", escaped(text).c_str());
+      std::fprintf(stderr, "{\"event\": \"message\", \"message\": %s}\n", json_string(text).c_str());
     else
       std::fprintf(stderr, "%s\n", text.c_str());
   }
+  /// Clears the line in progress.
   void end() {
     if (open_) std::fputs("\r\033[K", stderr);
     open_ = false;
   }
 
  private:
-  static std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c == '\n' ? ' ' : c;
-    }
-    return out;
-  }
   bool quiet_, json_, terminal_, open_ = false;
   std::chrono::steady_clock::time_point last_{};
 };
