@@ -27,7 +27,9 @@ double normal_force(const Law& law, double overlap, double vn, double m_eff) {
 }  // namespace
 
 TEST_CASE("the dashpot returns the restitution; clipped it follows its closed form") {
-  for (const double e : {0.3, 0.5, 0.9}) {
+  const double table[][2] = {{0.3, .39714}, {0.4, .47201}, {0.5, .55028}, {0.9, .90203}};
+  for (const auto& row : table) {
+    const double e = row[0];
     const Body s = sphere(1e-3, 2500, {}, {});
     const double dt = pi * std::sqrt(0.5 * s.m / 1e3) / 20000;
     const Law free(kLib, {}, {{"kn", 1e3}, {"restitution", e}, {"friction", 0}});
@@ -37,7 +39,8 @@ TEST_CASE("the dashpot returns the restitution; clipped it follows its closed fo
     const Law cut(kLib, {{"tension", "clipped"}}, {{"kn", 1e3}, {"restitution", e}, {"friction", 0}});
     const double z = -std::log(e) / std::sqrt(pi * pi + std::log(e) * std::log(e)), w = std::sqrt(1 - z * z);
     const double exact = std::exp(-z / w * (pi - std::atan(2 * z * w / (1 - 2 * z * z))));
-    CHECK_NEAR(restitution(cut, s, s, 0.5, dt, 1), exact, 1e-3);
+    CHECK_NEAR(exact, row[1], 1e-4);
+    CHECK_NEAR(restitution(cut, s, s, 0.5, dt, 1), row[1], 1e-3);
   }
 }
 
