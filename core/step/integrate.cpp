@@ -35,7 +35,8 @@ struct TurnTile {
 };
 
 /// Turns the bodies of a tile over dt by the midpoint rule: angular momentum gets torque * kick, the body turns freely
-/// (momentum kept exactly), then momentum gets torque * late_kick. Columns, so that the compiler works on eight at once.
+/// (momentum kept exactly), then momentum gets torque * late_kick. Columns, so that the compiler works on eight at
+/// once.
 CALX_HOT void turn_bodies(std::uint32_t n, TurnTile& t, double dt, double kick, double late_kick) {
 #pragma omp simd
   for (std::uint32_t k = 0; k < n; ++k) {
@@ -295,8 +296,7 @@ void Engine::guard_pass(std::size_t c) {
     const double limit = margin_[p] * margin_[p];
     const std::uint32_t first = particles.has_clumps ? particles.first_sphere[p] : p;
     const std::uint32_t last = particles.has_clumps ? particles.first_sphere[p + 1] : p + 1;
-    for (std::uint32_t k = first; k < last; ++k)
-      result.stale |= norm2(position(s[k]) - reference_[k]) > limit;
+    for (std::uint32_t k = first; k < last; ++k) result.stale |= norm2(position(s[k]) - reference_[k]) > limit;
   }
 }
 

@@ -39,19 +39,20 @@ const char sha256[] =
 // What the user may set. Options belong to the instance, material values to each material, given values to each pair;
 // the case file holds options and given values in one object.
 const calx_field options[] = {
-    CALX_ROLLING_OPTION
-    {"tension", "allowed|clipped|gripping",
-     "allowed: the dashpot may pull at the end of a contact, restitution is exact, and there is no friction while it does; "
-     "clipped: the normal force never pulls; gripping: as allowed, with friction from the size of the pull (LIGGGHTS)",
-     0, 2, 0, CALX_FIELD_CHOICE, 0},
+    CALX_ROLLING_OPTION{"tension", "allowed|clipped|gripping",
+                        "allowed: the dashpot may pull at the end of a contact, restitution is exact, and there is no "
+                        "friction while it does; "
+                        "clipped: the normal force never pulls; gripping: as allowed, with friction from the size of "
+                        "the pull (LIGGGHTS)",
+                        0, 2, 0, CALX_FIELD_CHOICE, 0},
     {"tangential", "rescaled|displacement|incremental",
      "rescaled: a growing contact keeps the tangential force, a shrinking one the displacement, and no cycle creates "
-     "energy; displacement: always the displacement (EDEM, LIGGGHTS); incremental: always the force (Mindlin increments)",
+     "energy; displacement: always the displacement (EDEM, LIGGGHTS); incremental: always the force (Mindlin "
+     "increments)",
      0, 2, 0, CALX_FIELD_CHOICE, 0}};
 enum { YOUNG, POISSON };
-const calx_field material[] = {
-    {"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
-    {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
+const calx_field material[] = {{"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
+                               {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
 enum { RESTITUTION, FRICTION, TANGENTIAL_RATIO, ROLLING_FIRST };
 enum { RESCALED, DISPLACEMENT, INCREMENTAL };
 enum { ALLOWED, CLIPPED, GRIPPING };
@@ -122,8 +123,8 @@ class HertzMindlin : public calx::Instance {
     });
   }
 
-  // K is the largest tangent stiffness at the largest expected overlap; Mindlin's S_t < S_n for every Poisson's ratio, a
-  // scaled one or a rolling spring may exceed it.
+  // K is the largest tangent stiffness at the largest expected overlap; Mindlin's S_t < S_n for every Poisson's ratio,
+  // a scaled one or a rolling spring may exceed it.
   static double CALX_CALL stable_dt(const double* pair, double m_eff, double r_eff, double overlap) noexcept {
     hertz_mindlin_pair_f64 row;
     std::memcpy(&row, pair, offsetof(hertz_mindlin_pair_f64, calx_unused));

@@ -26,8 +26,13 @@ inline std::vector<Setup> all_setups() {
       Values v = hm_roll;
       v.insert({{"plasticity", 0.5}, {"surface_energy", 1}, {"pull_off", 1e-5}});
       all.push_back({"calx-epam", {{"exponent", exponent}, {"rolling", rolling}}, v});
-      all.push_back({"calx-epam", {{"exponent", exponent}, {"rolling", rolling}, {"adhesion_exponent", "4.5"},
-                                   {"adhesion_cap", "literal"}, {"dashpot", "always"}}, v});
+      all.push_back({"calx-epam",
+                     {{"exponent", exponent},
+                      {"rolling", rolling},
+                      {"adhesion_exponent", "4.5"},
+                      {"adhesion_cap", "literal"},
+                      {"dashpot", "always"}},
+                     v});
     }
   return all;
 }

@@ -59,10 +59,12 @@ Loop loop(const Law& law, double top, int steps) {
 }  // namespace
 
 TEST_CASE("T1: loop restitution of both exponents, every row of the table, whatever the speed") {
-  // lambda, exponent 1, exponent 1.5: e^2 = [1 - (n+1) lambda + n lambda^((n+1)/n)] / (1 - lambda). The law has no n = 2.
-  const double table[][3] = {{0.1, .94868, .93233}, {0.2, .89443, .86790}, {0.3, .83666, .80326}, {0.4, .77460, .73681},
-                             {0.5, .70711, .66704}, {0.6, .63246, .59212}, {0.7, .54772, .50922}, {0.8, .44721, .41309},
-                             {0.9, .31623, .29033}, {0.95, .22361, .20470}, {0.99, .10000, .09134}};
+  // lambda, exponent 1, exponent 1.5: e^2 = [1 - (n+1) lambda + n lambda^((n+1)/n)] / (1 - lambda). The law has no n
+  // = 2.
+  const double table[][3] = {{0.1, .94868, .93233},  {0.2, .89443, .86790}, {0.3, .83666, .80326},
+                             {0.4, .77460, .73681},  {0.5, .70711, .66704}, {0.6, .63246, .59212},
+                             {0.7, .54772, .50922},  {0.8, .44721, .41309}, {0.9, .31623, .29033},
+                             {0.95, .22361, .20470}, {0.99, .10000, .09134}};
   for (const auto& row : table) {
     const double lambda = row[0];
     CAPTURE(lambda);
@@ -125,7 +127,8 @@ TEST_CASE("T3: fixed adhesive stiffness, n = chi = 1") {
     for (const double k : {0.0, 200.0, 1000.0, 5000.0}) {
       CAPTURE(lambda);
       CAPTURE(k);
-      const Law law(kLib, {{"exponent", "1"}}, base({{"plasticity", lambda}, {"k1", 1000}, {"k_adh", k}}), kSoft, kSoft);
+      const Law law(kLib, {{"exponent", "1"}}, base({{"plasticity", lambda}, {"k1", 1000}, {"k_adh", k}}), kSoft,
+                    kSoft);
       Record r;
       const double e = linear_impact(law, 1000, v, 20000, &r);
       const double e2 = (1 - lambda) - lambda * lambda * k / (1000 + (1 - lambda) * k);
@@ -137,7 +140,8 @@ TEST_CASE("T3: fixed adhesive stiffness, n = chi = 1") {
         CHECK(e == -1);
       }
     }
-  // Sticks from k_adh = (1 - lambda) k1 / (2 lambda - 1) on: 750 N/m at lambda 0.7; with k_adh = k2 from lambda 0.5858 on.
+  // Sticks from k_adh = (1 - lambda) k1 / (2 lambda - 1) on: 750 N/m at lambda 0.7; with k_adh = k2 from lambda 0.5858
+  // on.
   const auto at = [&](double lambda, double k) {
     const Law law(kLib, {{"exponent", "1"}}, base({{"plasticity", lambda}, {"k1", 1000}, {"k_adh", k}}), kSoft, kSoft);
     return linear_impact(law, 1000, v, 20000);
@@ -159,14 +163,15 @@ TEST_CASE("T4: pull-off and loop energy by surface energy, all rows, both caps")
     const char* cap;
     double gamma, minimum, energy;
   };
-  const Case cases[] = {{"consistent", 0.1, 3.737e-5, 5.5914e-8},   {"consistent", 1, 3.737e-4, 5.6764e-8},
-                        {"consistent", 10, 3.737e-3, 6.5488e-8},    {"consistent", 100, 0.012571, 9.0985e-8},
-                        {"literal", 0.1, 3.737e-5, 5.5914e-8},      {"literal", 10, 3.737e-3, 6.5488e-8},
+  const Case cases[] = {{"consistent", 0.1, 3.737e-5, 5.5914e-8}, {"consistent", 1, 3.737e-4, 5.6764e-8},
+                        {"consistent", 10, 3.737e-3, 6.5488e-8},  {"consistent", 100, 0.012571, 9.0985e-8},
+                        {"literal", 0.1, 3.737e-5, 5.5914e-8},    {"literal", 10, 3.737e-3, 6.5488e-8},
                         {"literal", 100, 0.014728, 9.8045e-8}};
   for (const Case& c : cases) {
     CAPTURE(c.cap);
     CAPTURE(c.gamma);
-    const Law law(kLib, {{"adhesion_cap", c.cap}}, base({{"plasticity", 0.5}, {"surface_energy", c.gamma}}), kSoft, kSoft);
+    const Law law(kLib, {{"adhesion_cap", c.cap}}, base({{"plasticity", 0.5}, {"surface_energy", c.gamma}}), kSoft,
+                  kSoft);
     const Loop l = loop(law, 1e-5, 20000);
     CHECK_NEAR(l.peak, 0.025142, 1e-4);
     CHECK_NEAR(l.minimum, -c.minimum, 2e-4);
@@ -270,7 +275,8 @@ TEST_CASE("T5: restitution rises from sticking with the impact speed") {
 
 TEST_CASE("T6 and damped plastic impacts: what the dashpot switches do") {
   const double table[][4] = {{0, 0.5, 0.5503, 0.5000},   {0.3, 0.5, 0.4811, 0.3543}, {0.5, 0.4, 0.3683, 0.1474},
-                             {0.5, 0.5, 0.4216, 0.2423}, {0.5, 0.7, 0.5319, 0.4295}, {0.8, 0.5, 0.2876, 0.0266}, {0.8, 0.4, 0.2560, -1}};
+                             {0.5, 0.5, 0.4216, 0.2423}, {0.5, 0.7, 0.5319, 0.4295}, {0.8, 0.5, 0.2876, 0.0266},
+                             {0.8, 0.4, 0.2560, -1}};
   for (const auto& row : table) {
     const Values v = {{"plasticity", row[0]}, {"restitution", row[1]}, {"friction", 0}, {"k1", 1000}};
     CAPTURE(row[0]);
@@ -325,9 +331,10 @@ TEST_CASE("T7: pull-off of a virgin and of a consolidated contact, pair and wall
 
 TEST_CASE("friction limit: mu (F + k_adh delta^chi), nothing on the adhesive branch") {
   const double mu = 0.5;
-  const Law law(kLib, {{"exponent", "1"}},
-                {{"plasticity", 0.5}, {"restitution", 1}, {"friction", mu}, {"k1", 1000}, {"k_adh", 500}, {"pull_off", 1e-3}},
-                kSoft, kSoft);
+  const Law law(
+      kLib, {{"exponent", "1"}},
+      {{"plasticity", 0.5}, {"restitution", 1}, {"friction", mu}, {"k1", 1000}, {"k_adh", 500}, {"pull_off", 1e-3}},
+      kSoft, kSoft);
   auto state = law.fresh();
   Input row;
   row[CALX_IN_NZ] = 1;

@@ -1,4 +1,5 @@
-// test_epam_loops.cpp: calx.epam against LIGGGHTS loops, its refusals, and what its tables say. Data: tests/data/README.md.
+// test_epam_loops.cpp: calx.epam against LIGGGHTS loops, its refusals, and what its tables say. Data:
+// tests/data/README.md.
 #include <doctest/doctest.h>
 
 #include "support/law_bench.hpp"
@@ -23,7 +24,8 @@ TEST_CASE("LIGGGHTS edinburgh/stiffness: all 16 loops") {
     CAPTURE(row.at("case"));
     const bool hertz = number(row, "n") > 1.2, fixed = row.at("adhesion_mode") == "fixed_k_adh";
     const double k1 = number(row, "k1_N_per_m_n");
-    Values v = base({{"plasticity", 1 - 1 / number(row, "k2_over_k1")}, {"k1", k1}, {"pull_off", number(row, "f0_pull_off_N")}});
+    Values v = base(
+        {{"plasticity", 1 - 1 / number(row, "k2_over_k1")}, {"k1", k1}, {"pull_off", number(row, "f0_pull_off_N")}});
     if (fixed) v["k_adh"] = k1 * number(row, "k_adh_over_k1");
     if (row.at("adhesion_mode") == "surface_energy") v["surface_energy"] = number(row, "dgamma_J_m2");
     const std::string chi = number(row, "chi") > 1.2 ? "1.5" : "1";
@@ -77,7 +79,13 @@ TEST_CASE("wrong input is refused with its reason") {
   struct Memo {
     std::string text;
   } memo;
-  calx_host host = {sizeof(calx_host), 1, 0, &memo, "test", "1", nullptr,
+  calx_host host = {sizeof(calx_host),
+                    1,
+                    0,
+                    &memo,
+                    "test",
+                    "1",
+                    nullptr,
                     [](const calx_host* h, calx_status code, const char* text) -> calx_status {
                       static_cast<Memo*>(h->self)->text = text;
                       return code;

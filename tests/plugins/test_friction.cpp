@@ -159,7 +159,8 @@ TEST_CASE("T8: PFC's rolling verification: r 5 mm, rho 2500, E 10 MPa, mu 0.8, v
   const Material soft{1e7, 0.25};
   const auto ball = [&](const char* rolling, double mu_r) {
     return std::unique_ptr<Law>(new Law("calx-hertz-mindlin", {{"rolling", rolling}},
-                                        {{"restitution", 0.3}, {"friction", mu}, {"rolling_friction", mu_r}}, soft, soft));
+                                        {{"restitution", 0.3}, {"friction", mu}, {"rolling_friction", mu_r}}, soft,
+                                        soft));
   };
   SUBCASE("flat, no resistance: slides, then rolls at 5/7") {
     const auto law = ball("none", 0);

@@ -15,7 +15,8 @@ const Material kRigid{1e14, 0.23};  // 1000 times stiffer than steel
 }  // namespace
 
 TEST_CASE("Tsuji dashpot returns the restitution asked for when tension is allowed") {
-  // Chung and Ooi test 3: 0.5 %, alumina and cast iron. e = 0: critical damping, which parts or creeps at rounding speed.
+  // Chung and Ooi test 3: 0.5 %, alumina and cast iron. e = 0: critical damping, which parts or creeps at rounding
+  // speed.
   for (const Material& m : {Material{3.8e11, 0.23}, Material{1e11, 0.25}}) {
     const Law law(kLib, {}, {{"restitution", 0}, {"friction", 0}}, m, m);
     CHECK(restitution(law, sphere(2.5e-3, 4000, {}, {}), wall(), 3.9, 5e-9, 1e-3) < 5e-3);
@@ -72,13 +73,15 @@ TEST_CASE("Chung and Ooi tests 1 and 2: the digitised curves over displacement a
     CAPTURE(test);
     const bool pair = test == 1;
     const Law law(kLib, {}, {{"restitution", 1}, {"friction", 0}}, pair ? glass : alloy, pair ? glass : kRigid);
-    const double r = pair ? 0.01 : 0.1, rho = pair ? 2800 : 2699, v = pair ? 20 : 0.2, peak = pair ? 10696.89 : 11369.86;
+    const double r = pair ? 0.01 : 0.1, rho = pair ? 2800 : 2699, v = pair ? 20 : 0.2,
+                 peak = pair ? 10696.89 : 11369.86;
     const double duration = pair ? 40.3395e-6 : 731.657e-6, dt = duration / 8000;
     const std::string name = "chung_ooi/test" + std::to_string(test);
     double worst_x = 0, worst_t = 0;
     for (const Row& row : read_table(name + "_force_vs_displacement_um_kN_digitised.csv")) {
       auto state = law.fresh();
-      const double f = press(law, state, 1e-6 * number(row, pair ? "x_displacement_um" : "displacement_um"), r, pair ? r : 0);
+      const double f =
+          press(law, state, 1e-6 * number(row, pair ? "x_displacement_um" : "displacement_um"), r, pair ? r : 0);
       worst_x = std::fmax(worst_x, std::fabs(f - 1e3 * number(row, "normal_force_kN")) / peak);
     }
     std::vector<double> force;  // by step
@@ -111,5 +114,6 @@ TEST_CASE("without rolling the law has three history columns and asks for no spi
 TEST_CASE("stable step shrinks as the overlap grows") {
   const Law law(kLib, {}, {{"restitution", 0.3}, {"friction", 0.5}});
   const double e_star = 1e7 / (2 * (1 - 0.0625)), m = 1e-5, r = 1e-3, d = 1e-5;
-  CHECK_NEAR(law.table().stable_dt(law.pair().data(), m, r, d), 0.17 * std::sqrt(m / (2 * e_star * std::sqrt(r * d))), 1e-12);
+  CHECK_NEAR(law.table().stable_dt(law.pair().data(), m, r, d), 0.17 * std::sqrt(m / (2 * e_star * std::sqrt(r * d))),
+             1e-12);
 }

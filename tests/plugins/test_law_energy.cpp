@@ -70,7 +70,8 @@ TEST_CASE("no closed path of pressing and shearing gives more energy than was st
         for (int k = 0; k < steps; ++k) {
           at = at + leg;
           Input row;
-          const double in[CALX_IN_COUNT] = {at.z, 0, 0, 1, leg.x / kDt, leg.y / kDt, -leg.z / kDt, 0, 0, 0, 0.5 * r, 1e-6, r, r, 0};
+          const double in[CALX_IN_COUNT] = {at.z, 0, 0, 1, leg.x / kDt, leg.y / kDt, -leg.z / kDt, 0, 0, 0, 0.5 * r,
+                                            1e-6, r, r, 0};
           std::memcpy(row.in, in, sizeof in);
           o = law.evaluate(row, state, kDt);
           const V3 f{o[0], o[1], o[2]};
@@ -93,8 +94,9 @@ TEST_CASE("no closed path of pressing and shearing gives more energy than was st
 }
 
 TEST_CASE("what a contact still stores when it ends is nothing against what it lost") {
-  // A law cannot know that a step is the last one touching, so this energy leaves the account unbooked. Both springs fade
-  // with the force that limits them; what stays is an effect of the last step's size, here 30 to 40 steps a contact.
+  // A law cannot know that a step is the last one touching, so this energy leaves the account unbooked. Both springs
+  // fade with the force that limits them; what stays is an effect of the last step's size, here 30 to 40 steps a
+  // contact.
   std::mt19937 bits(3);
   const auto uniform = [&](double lo, double hi) { return lo + (hi - lo) * (bits() / 4294967296.0); };
   for (const Setup& setup : all_setups()) {

@@ -1,6 +1,6 @@
-// test_oblique.cpp: oblique impacts of calx.hertz-mindlin against published benchmarks, an experiment and stored answers
-// of other codes. Codes differ in what a changing contact keeps, force or displacement, and in friction while the dashpot
-// pulls; each comparison names the form of its source. Data: tests/data/README.md.
+// test_oblique.cpp: oblique impacts of calx.hertz-mindlin against published benchmarks, an experiment and stored
+// answers of other codes. Codes differ in what a changing contact keeps, force or displacement, and in friction while
+// the dashpot pulls; each comparison names the form of its source. Data: tests/data/README.md.
 #include <doctest/doctest.h>
 
 #include "support/law_bench.hpp"
@@ -24,7 +24,8 @@ TEST_CASE("Chung and Ooi test 4: oblique impact of alumina on a rigid plane") {
   int count = 0;
   for (const Row& row : read_table("chung_ooi/test4_oblique_impact_digitised.csv")) {
     if (row.at("series") != "Al_oxide_DEM") continue;
-    const double angle = number(row, "incident_angle_deg") * kDegree, rebound = number(row, "rebound_angle_contact_patch_deg");
+    const double angle = number(row, "incident_angle_deg") * kDegree,
+                 rebound = number(row, "rebound_angle_contact_patch_deg");
     const double vt = 3.9 * std::sin(angle), vn = 3.9 * std::cos(angle);
     const Rebound b = oblique(law, ball, vt, vn, 2e-9);
     et_error += std::fabs(b.vt / vt / number(row, "tangential_restitution") - 1);
@@ -60,7 +61,8 @@ TEST_CASE("Chung and Ooi test 5: tangential rebound against its incidence") {
   const double r = 1e-5, mu_vn = 0.3 * 5;
   for (const Series& series : {Series{"FEM", "rescaled", 0.78}, Series{"Steel", "incremental", 0.5}}) {
     const Law law(kLib, {{"tangential", series.tangential}},
-                  {{"restitution", 1}, {"friction", 0.3}, {"tangential_ratio", series.ratio}}, {2.08e11, 0.3}, {1e14, 0.3});
+                  {{"restitution", 1}, {"friction", 0.3}, {"tangential_ratio", series.ratio}}, {2.08e11, 0.3},
+                  {1e14, 0.3});
     double worst[2] = {0, 0}, low[2] = {1e9, 1e9}, high[2] = {-1e9, -1e9};
     int count = 0;
     for (const Row& row : read_table("chung_ooi/test5_normalised_digitised.csv")) {
@@ -88,8 +90,9 @@ TEST_CASE("Chung and Ooi test 5: tangential rebound against its incidence") {
 }
 
 TEST_CASE("Chung and Ooi test 6: a spinning sphere dropped on a plane") {
-  // beta = s - 1 while it slides, s from the restitution it really has: friction sees the impulse that pushes. Where the
-  // dashpot may pull, that is more than (1 + e) m v_n (by 3 % for 0.5), so the comparison clips and 0.43631 returns 0.5.
+  // beta = s - 1 while it slides, s from the restitution it really has: friction sees the impulse that pushes. Where
+  // the dashpot may pull, that is more than (1 + e) m v_n (by 3 % for 0.5), so the comparison clips and 0.43631 returns
+  // 0.5.
   const Law law(kLib, {{"tension", "clipped"}}, {{"restitution", 0.43631}, {"friction", 0.4}}, {7e10, 0.33}, kRigid);
   const Body still = sphere(0.1, 2700, {}, {});
   CHECK_NEAR(restitution(law, still, wall(), 0.2, 2e-7, 1), 0.5, 1e-4);
@@ -166,7 +169,8 @@ TEST_CASE("MFiX DEM05, Hertzian: tangential restitution, spin and rebound angle 
 
 TEST_CASE("Kharaz, Gorham, Salman: alumina on glass, MFiX' own error beside ours") {
   // RMS over all measured angles: absolute for the restitution, relative for the spin, degrees for the angle. Two
-  // digitisations of one spin point differ by 1.4 %, and spin and tangential speed as measured break m v r = I w by 6 %.
+  // digitisations of one spin point differ by 1.4 %, and spin and tangential speed as measured break m v r = I w by 6
+  // %.
   struct Form {
     double ratio, most[3];
   };
@@ -223,9 +227,16 @@ TEST_CASE("LIGGGHTS and Yade: floor bounce, oblique floor and oblique pair with 
   };
   // LIGGGHTS: 0.1 %; the floor's vx 0.4 %, its contact point lies half an overlap nearer the surface of the sphere.
   // Yade: 0.25 %; 1.5 % in the sticking floor impact, where it keeps neither force nor displacement exactly.
-  const Answers all[] = {
-      {{{"tension", "gripping"}, {"tangential", "displacement"}}, 0.13316, 0.2139, 171.2, -0.14885, 0.16471, -75.16, 1e-3, 4e-3},
-      {{{"tension", "clipped"}}, 0.18205, 0.2110, 175.2, -0.19752, 0.16431, -77.40, 2.5e-3, 1.5e-2}};
+  const Answers all[] = {{{{"tension", "gripping"}, {"tangential", "displacement"}},
+                          0.13316,
+                          0.2139,
+                          171.2,
+                          -0.14885,
+                          0.16471,
+                          -75.16,
+                          1e-3,
+                          4e-3},
+                         {{{"tension", "clipped"}}, 0.18205, 0.2110, 175.2, -0.19752, 0.16431, -77.40, 2.5e-3, 1.5e-2}};
   for (const Answers& a : all) {
     const Law law(kLib, a.choices, {{"restitution", 0.3}, {"friction", 0.5}});
     const auto run = [&](const Body& i, const Body& j, double g) {
