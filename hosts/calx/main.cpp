@@ -192,9 +192,6 @@ int main(int argc, char** argv) {
   for (auto* command : {list_command, describe_command, schema_command})
     command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
 
-  // "--plugin-path" may stand behind the id as well.
-  for (auto* command : {list_command, describe_command, schema_command}) command->fallthrough();
-
   calx::add_bench_command(app);
   return guarded(app, run_flags.json, argc, argv);
 }

@@ -212,15 +212,15 @@ class Epam : public calx::Instance {
     CALX_ROLLING_DERIVE(rolling_, value + ROLLING_FIRST, row);
   }
 
-  // 0.17 sqrt(m / K), K = n k2 delta^(n-1): the unloading line is stiffer than the virgin one by 1/(1 - lambda)
-  // (O'Sullivan, Bray 2004, for the factor).
+  // K = n k2 delta^(n-1): the unloading line is stiffer than the virgin one by 1/(1 - lambda).
   template <int twice_n>
   static double CALX_CALL stable_dt(const double* pair, double m_eff, double r_eff, double overlap) noexcept {
     epam_n1_pair_f64 row;
     std::memcpy(&row, pair, offsetof(epam_n1_pair_f64, calx_unused));
     const double secant = row.k1_given * (twice_n == 3 ? std::sqrt(overlap) : 1) +
                           row.k1_size * (twice_n == 3 ? std::sqrt(r_eff * overlap) : r_eff);
-    return 0.17 * std::sqrt(m_eff / (secant * std::fmax(0.5 * twice_n * row.unload, row.kt_share)));
+    const double kt = secant * row.kt_share, roll = CALX_ROLLING_STIFFNESS(row, secant, kt);
+    return calx_stable_step(m_eff, std::fmax(std::fmax(0.5 * twice_n * row.unload * secant, kt), roll), row.roll_c);
   }
 
   bool hertz_, literal_cap_, retrace_, tsuji_;

@@ -123,13 +123,14 @@ class HertzMindlin : public calx::Instance {
     });
   }
 
-  // 0.17 sqrt(m / K): stable for a sphere held by many springs of stiffness K (O'Sullivan, Bray 2004). K is the tangent
-  // stiffness at the largest expected overlap; Mindlin's S_t < S_n for every Poisson's ratio, a scaled one may exceed
-  // it.
+  // K is the largest tangent stiffness at the largest expected overlap; Mindlin's S_t < S_n for every Poisson's ratio,
+  // a scaled one or a rolling spring may exceed it.
   static double CALX_CALL stable_dt(const double* pair, double m_eff, double r_eff, double overlap) noexcept {
     hertz_mindlin_pair_f64 row;
     std::memcpy(&row, pair, offsetof(hertz_mindlin_pair_f64, calx_unused));
-    return 0.17 * std::sqrt(m_eff / (std::fmax(row.two_e, row.eight_g) * std::sqrt(r_eff * overlap)));
+    const double a = std::sqrt(r_eff * overlap), sn = row.two_e * a, st = row.eight_g * a;
+    const double roll = CALX_ROLLING_STIFFNESS(row, 2.0 / 3 * sn, st);
+    return calx_stable_step(m_eff, std::fmax(std::fmax(sn, st), roll), row.roll_c);
   }
 
   int rolling_, tension_, tangential_;

@@ -109,11 +109,14 @@ class Linear : public calx::Instance {
     });
   }
 
-  // 0.17 sqrt(m / K): stable for a sphere held by many springs of stiffness K (O'Sullivan, Bray 2004).
+  // A dashpot from the restitution is at most critical, so that the springs' step serves it; one given outright may not
+  // be.
   static double CALX_CALL stable_dt(const double* pair, double m_eff, double, double) noexcept {
     linear_spring_pair_f64 row;
     std::memcpy(&row, pair, offsetof(linear_spring_pair_f64, calx_unused));
-    return 0.17 * std::sqrt(m_eff / std::max(row.kn, row.kt));
+    const double stiffest = std::max(std::max(row.kn, row.kt), CALX_ROLLING_STIFFNESS(row, row.kn, row.kt));
+    const double normal = row.given_n + row.rate_n * m_eff, tangential = row.given_t + row.rate_t * m_eff;
+    return calx_stable_step(m_eff, stiffest, std::max(std::max(normal, tangential), row.roll_c));
   }
 
   int rolling_;

@@ -99,10 +99,10 @@ class FakeWorld : public WorldView {
     std::swap(grains.id[a], grains.id[b]);
   }
   void touch(std::uint32_t i, std::uint32_t j, const Vec3& normal, double overlap = 0) {
-    rows.push_back({i, j, -1, overlap, normal, {}});
+    rows.push_back({i, j, -1, overlap, normal});
   }
   void touch_part(std::uint32_t i, int part, const Vec3& normal, double overlap = 0) {
-    rows.push_back({i, 0, part, overlap, normal, {}});
+    rows.push_back({i, 0, part, overlap, normal});
   }
 
   std::unique_ptr<Sensor> sensor(const std::string& json_text, const std::string& kind) const {

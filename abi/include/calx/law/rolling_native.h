@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * calx/law/rolling_native.h: the native side of rolling.h: the rows a law adds to its tables, and the numbers of the pair
- * row from what the user gave. C99 and C++98; include once, after the f64 prelude and rolling.h. */
+ * row from what the user gave; its share in the stable step. C99 and C++98; include once, after the f64 prelude and rolling.h. */
 #ifndef CALX_LAW_ROLLING_NATIVE_H
 #define CALX_LAW_ROLLING_NATIVE_H
 #include <calx/abi.h>
+#include <math.h>
 
 #define CALX_ROLLING_NONE 0
 #define CALX_ROLLING_A 1
@@ -37,4 +38,14 @@
     (pair).roll_eta = (model) == CALX_ROLLING_EPSD ? (given)[1] : 0.0;                                  \
     (pair).roll_type_a = (model) == CALX_ROLLING_A ? 1.0 : 0.0;                                         \
   } while (0)
+
+/* Stiffness of the rolling spring over R*^2, N/m, where the contact has kn and kt. */
+#define CALX_ROLLING_STIFFNESS(pair, kn, kt) ((pair).roll_of_kn * (kn) + (pair).roll_of_kt * (kt) + (pair).roll_k)
+
+/* Stable step of a sphere held by many contacts: 0.17 sqrt(m / K), K the largest stiffness (O'Sullivan, Bray 2004), and
+ * 0.17 2 m / c, which is the same at critical damping, for a dashpot c given outright. */
+static inline double calx_stable_step(double mass, double stiffness, double dashpot) {
+  const double by_spring = sqrt(mass / stiffness), by_dashpot = dashpot > 0 ? 2 * mass / dashpot : by_spring;
+  return 0.17 * (by_spring < by_dashpot ? by_spring : by_dashpot);
+}
 #endif
