@@ -395,14 +395,15 @@ std::string check_case(const RunOptions& options) {
   // Measured on two cores of a server of 2024 with Hertz-Mindlin and EpAM; an order of magnitude for other machines.
   constexpr double kSphereStepsPerCore = 5e6;
   const int threads = options.simulation.threads > 0 ? options.simulation.threads : omp_get_max_threads();
+  const std::string cores = std::to_string(threads) + (threads == 1 ? " thread" : " threads");
   line("Size: " + brief_quantity(mass, "kg") + ", " + format_number(std::round(particles)) + " particles, " +
        format_number(std::round(spheres)) + " spheres, " + format_number(std::round(steps)) + " steps, " +
        brief_quantity(particles * steps, "1") + " particle-steps");
   const double megabytes = std::round(spheres * 600 / 1e6), cost = work / (kSphereStepsPerCore * threads);
   line("Memory: " + (megabytes < 1 ? "below 1" : "about " + brief_quantity(megabytes, "1")) + " MB");
-  line("Cost: " + (cost < 1 ? "below 1 s" : "about " + clock_text(cost)) + " on " + std::to_string(threads) +
-       " threads at " + format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
-  line("Device: cpu, double precision, " + std::to_string(threads) + " threads; every plugin runs there");
+  line("Cost: " + (cost < 1 ? "below 1 s" : "about " + clock_text(cost)) + " on " + cores +
+       " at " + format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
+  line("Device: cpu, double precision, " + cores + "; every plugin runs there");
   line("Materials (SI units):");
   for (const auto& m : c.materials) {
     std::string text;

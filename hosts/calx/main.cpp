@@ -170,7 +170,14 @@ int main(int argc, char** argv) {
   auto* report_command = app.add_subcommand("report", "write report.html of a finished or running run");
   std::string report_folder;
   report_command->add_option("dir", report_folder, "folder of the run")->required();
-  report_command->callback([&] { std::printf("%s\n", calx::write_report(report_folder).c_str()); });
+  report_command->callback([&] {
+    namespace fs = std::filesystem;
+    if (fs::is_directory(report_folder) && !fs::exists(report_folder + "/case.json") &&
+        !fs::exists(report_folder + "/summary.json"))
+      throw calx::Error(calx::Fault::files, report_folder + ": holds no run, neither case.json nor summary.json; give the "
+                                                            "folder of a run (-o of calx run)");
+    std::printf("%s\n", calx::write_report(report_folder).c_str());
+  });
 
   auto* plugin_command = app.add_subcommand("plugin", "list, describe and explain plugins");
   plugin_command->require_subcommand(1);
