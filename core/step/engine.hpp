@@ -1,9 +1,11 @@
 // engine.hpp: one time step of the world: contacts, sums in a fixed order, integration, guards.
 //
 // Every pass runs over fixed chunks of particles; each chunk's result depends on its inputs alone, so the same bits
-// come out for any number of threads. The law sees positions and velocities of the same instant:
+// come out for any number of threads. The law sees the velocity of a particle before the kick of the step, which has
+// moved it to where it is; a law that adds half of its own kick finds the mean velocity of the step, and the energy
+// ledger closes to second order in dt:
 //   euler (semi-implicit): forces at t(n) from x(n), v(n), then v(n+1) = v + a dt, x(n+1) = x + v(n+1) dt;
-//   verlet: x(n+1) from v(n+1/2), forces at t(n+1) from x(n+1) and the predicted v(n+1), then v(n+1).
+//   verlet: x(n+1) from v(n+1/2), forces at t(n+1) from x(n+1) and v(n+1/2), then v(n+1) = v(n+1/2) + a dt/2.
 #pragma once
 #include <cstdint>
 #include <memory>

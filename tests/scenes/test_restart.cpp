@@ -28,18 +28,18 @@ void check_equal(const Simulation& a, const Simulation& b) {
   CHECK(a.counters().rebuilds == b.counters().rebuilds);
 }
 
-/// Saves at the steps given, each time going on in a new simulation; threads differ on purpose.
-void check_restarts(const CaseFile& file, int steps, const std::vector<int>& stops) {
+/// Saves at the steps given, each time going on in a new simulation; the number of threads changes on the way.
+void check_restarts(const CaseFile& file, int threads, int steps, const std::vector<int>& stops) {
   Simulation straight(file, test_options(1));
   advance(straight, steps);
-  auto sim = std::make_unique<Simulation>(file, test_options(2));
+  auto sim = std::make_unique<Simulation>(file, test_options(threads));
   int done = 0;
   for (const int stop : stops) {
     advance(*sim, stop - done);
     done = stop;
     MemoryState state;
     sim->save(state);
-    sim = std::make_unique<Simulation>(file, test_options(1 + stop % 3));
+    sim = std::make_unique<Simulation>(file, test_options(stop % 2 == 0 ? 1 : threads));
     sim->load(state);
     MemoryState again;
     sim->save(again);
@@ -64,18 +64,19 @@ std::vector<int> random_stops(std::uint64_t seed, int steps) {
 }  // namespace
 
 TEST_CASE("a bed of spheres goes on from a checkpoint to the bit") {
-  for (const char* integrator : {"euler", "verlet"}) check_restarts(sphere_bed(integrator), 300, random_stops(1, 298));
+  for (const char* integrator : {"euler", "verlet"})
+    check_restarts(sphere_bed(integrator), 3, 300, random_stops(1, 298));
 }
 
 TEST_CASE("shaken cohesive clumps in a periodic box go on from a checkpoint to the bit") {
   for (const char* integrator : {"euler", "verlet"})
-    check_restarts(shaken_clumps(integrator), 250, random_stops(2, 248));
+    check_restarts(shaken_clumps(integrator), 2, 250, random_stops(2, 248));
 }
 
 TEST_CASE("sources by rate, events, motions, vanishing parts and losses go on from a checkpoint to the bit") {
   for (const char* integrator : {"euler", "verlet"}) {
     const CaseFile file = pouring(integrator);
-    Simulation straight(file, test_options(2));
+    Simulation straight(file, test_options());
     advance(straight, 1500);
     // The scene must mean something: the rain is over only later, some are lost, the fence is gone.
     CHECK(straight.world().mass().removed_count > 5);
@@ -83,15 +84,15 @@ TEST_CASE("sources by rate, events, motions, vanishing parts and losses go on fr
     CHECK_FALSE(straight.world().part_present(1));
     CHECK(straight.counters().touching > 50);
     CHECK(straight.world().energy().force_work < 0);
-    for (const std::uint64_t seed : {1, 2, 3}) check_restarts(file, 900, random_stops(seed, 898));
+    for (const std::uint64_t seed : {1, 2, 3}) check_restarts(file, 1, 900, random_stops(seed, 898));
     // Before the first step, after the first, and at the steps where things happen.
-    check_restarts(file, 700, {0, 1, 2, 199, 200, 201, 300, 301, 400, 401, 600, 601, 602});
+    check_restarts(file, 1, 700, {0, 1, 2, 199, 200, 201, 300, 301, 400, 401, 600, 601, 602});
   }
 }
 
 TEST_CASE("a simulation that has run already takes a checkpoint as a new one does") {
   const CaseFile file = sphere_bed("euler");
-  Simulation straight(file, test_options(2)), used(file, test_options(2));
+  Simulation straight(file, test_options()), used(file, test_options());
   advance(straight, 60);
   MemoryState state;
   straight.save(state);

@@ -10,4 +10,6 @@ function(calx_scene_test name file)
   endforeach()
   calx_test(${name}_${file} SOURCES test_${file}.cpp LINKS calx_sim OpenMP::OpenMP_CXX)
   add_dependencies(test_${name}_${file} ${A_PLUGINS})
+  # As the calx program does: threads that wait on a busy machine give their core away.
+  set_tests_properties(${name}_${file} PROPERTIES ENVIRONMENT GOMP_SPINCOUNT=10000)
 endfunction()
