@@ -42,8 +42,7 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
   const auto n = static_cast<std::uint32_t>(settings.materials.size());
   CaseLaws out;
   out.matrix.assign(static_cast<std::size_t>(n) * n, nullptr);
-  // The limits of the time step read the elastic constants whatever the law.
-  std::vector<std::string> known{"density", "young", "poisson"};
+  std::vector<std::string> known{"density"};
   for (const auto& contact : settings.contacts) {
     const std::uint32_t a = material_index(settings, contact.between[0]),
                         b = material_index(settings, contact.between[1]);
