@@ -174,8 +174,9 @@ int main(int argc, char** argv) {
     namespace fs = std::filesystem;
     if (fs::is_directory(report_folder) && !fs::exists(report_folder + "/case.json") &&
         !fs::exists(report_folder + "/summary.json"))
-      throw calx::Error(calx::Fault::files, report_folder + ": holds no run, neither case.json nor summary.json; give the "
-                                                            "folder of a run (-o of calx run)");
+      throw calx::Error(calx::Fault::files, report_folder +
+                                                ": holds no run, neither case.json nor summary.json; give the "
+                                                "folder of a run (-o of calx run)");
     std::printf("%s\n", calx::write_report(report_folder).c_str());
   });
 
