@@ -4,10 +4,8 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +15,8 @@
 #include "base/units.hpp"
 #include "io/io.hpp"
 #include "sim/summary.hpp"
+#include "sim/wall_clock.hpp"
+#include "sim/whole_case.hpp"
 
 namespace calx {
 namespace {
@@ -26,31 +26,6 @@ using Json = nlohmann::json;
 
 /// Wall time between two summaries of a running run, s.
 constexpr double kSummaryInterval = 5;
-
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::string clock_text(double s) {
-  char text[40];
-  const long whole = std::lround(s);
-  if (whole >= 86400)
-    std::snprintf(text, sizeof text, "%ld d %02ld h", whole / 86400, whole % 86400 / 3600);
-  else if (whole >= 3600)
-    std::snprintf(text, sizeof text, "%ld h %02ld min", whole / 3600, whole % 3600 / 60);
-  else if (whole >= 60)
-    std::snprintf(text, sizeof text, "%ld min %02ld s", whole / 60, whole % 60);
-  else
-    std::snprintf(text, sizeof text, "%ld s", whole);
-  return text;
-}
-
-std::string utc_now() {
-  const std::time_t t = std::time(nullptr);
-  char text[32];
-  std::tm parts{};
-  gmtime_r(&t, &parts);
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
-}
 
 /// Things done at multiples of an interval of simulated time, in the step that ends nearest to each. What is due
 /// follows from the time alone, so that a resumed run does it in the same steps.
@@ -87,30 +62,6 @@ std::string changed_places(const std::string& before, const std::string& now) {
     if (++count <= kShown) out += (out.empty() ? "" : ", ") + change["path"].get<std::string>();
   if (count > kShown) out += " and " + std::to_string(count - kShown) + " more";
   return out;
-}
-
-/// The case, whose materials that can meet all have a contact: without one they would pass through each other.
-CaseFile read_whole_case(const RunOptions& options) {
-  CaseFile file = read_case(options.case_path, options.overrides);
-  const CaseSettings& c = file.settings;
-  const auto need = [&](const std::string& a, const std::string& b, const std::string& who) {
-    for (const auto& contact : c.contacts)
-      if ((contact.between[0] == a && contact.between[1] == b) || (contact.between[0] == b && contact.between[1] == a))
-        return;
-    throw Error(Fault::settings, c.file + " /contacts: none is between \"" + a + "\" and \"" + b + "\", but " + who +
-                                     " can meet; add {\"between\": [\"" + a + "\", \"" + b + "\"], \"law\": ...}");
-  };
-  for (std::size_t k = 0; k < c.sources.size(); ++k) {
-    const SourceSettings& s = c.sources[k];
-    const bool single = s.count == 1 || s.positions.size() == 1;
-    if (!single) need(s.material, s.material, "particles of source \"" + s.name + "\"");
-    for (std::size_t m = 0; m < k; ++m)
-      need(c.sources[m].material, s.material,
-           "particles of sources \"" + c.sources[m].name + "\" and \"" + s.name + "\"");
-    for (const auto& part : c.parts)
-      need(s.material, part.material, "particles of source \"" + s.name + "\" and part \"" + part.name + "\"");
-  }
-  return file;
 }
 
 class Run {
@@ -357,81 +308,5 @@ std::string run_folder(const RunOptions& options) {
 }
 
 std::string run_case(const RunOptions& options) { return Run(options, read_whole_case(options)).go(); }
-
-std::string check_case(const RunOptions& options) {
-  Simulation sim(read_whole_case(options), options.simulation);
-  const CaseSettings& c = sim.settings();
-  // The first step places what is there at the start, and finds what overlaps or does not fit.
-  if (c.time.end > 0) sim.step();
-  std::string out;
-  auto line = [&](const std::string& text) { out += text + "\n"; };
-  line(c.title.empty() ? c.file : c.title);
-  line("");
-  line("Time step " + brief_quantity(sim.time_step(), "s") + (c.time.step > 0 ? " (given)" : "") + "; limits:");
-  for (const auto& l : sim.step_limits())
-    line("  " + std::string(l.binds ? "* " : "  ") + l.name +
-         std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') + brief_quantity(l.seconds, "s") + "  " + l.where +
-         (l.binds ? "  <- binds" : ""));
-  double mass = 0, particles = 0, spheres = 0;
-  const auto& shapes = sim.world().particles().shapes;
-  for (const auto& s : c.sources) {
-    std::size_t members = 1;
-    double volume = 0, density = 0;
-    for (const auto& shape : shapes)
-      if (shape.name == s.shape) members = shape.members.size(), volume = shape.volume;
-    for (const auto& m : c.materials)
-      if (m.name == s.material) density = m.density;
-    const double each = density * volume * std::pow(s.size.kind == SizeSettings::Kind::fixed ? s.size.scale : 1.0, 3);
-    const double n = s.count > 0  ? static_cast<double>(s.count)
-                     : s.mass > 0 ? s.mass / each
-                                  : static_cast<double>(s.positions.size());
-    mass += n * each;
-    particles += n;
-    spheres += n * static_cast<double>(members);
-    line("Source \"" + s.name + "\": " + brief_quantity(n * each, "kg") + ", about " + format_number(std::round(n)) +
-         " particles of \"" + s.shape + "\"");
-  }
-  const double steps = c.time.end / sim.time_step(), work = steps * spheres;
-  // Measured on two cores of a server of 2024 with Hertz-Mindlin and EpAM; an order of magnitude for other machines.
-  constexpr double kSphereStepsPerCore = 5e6;
-  const int threads = options.simulation.threads > 0 ? options.simulation.threads : omp_get_max_threads();
-  const std::string cores = std::to_string(threads) + (threads == 1 ? " thread" : " threads");
-  line("Size: " + brief_quantity(mass, "kg") + ", " + format_number(std::round(particles)) + " particles, " +
-       format_number(std::round(spheres)) + " spheres, " + format_number(std::round(steps)) + " steps, " +
-       brief_quantity(particles * steps, "1") + " particle-steps");
-  const double megabytes = std::round(spheres * 600 / 1e6), cost = work / (kSphereStepsPerCore * threads);
-  line("Memory: " + (megabytes < 1 ? "below 1" : "about " + brief_quantity(megabytes, "1")) + " MB");
-  line("Cost: " + (cost < 1 ? "below 1 s" : "about " + clock_text(cost)) + " on " + cores + " at " +
-       format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
-  line("Device: cpu, double precision, " + cores + "; every plugin runs there");
-  line("Materials (SI units):");
-  for (const auto& m : c.materials) {
-    std::string text;
-    const Json properties = Json::parse(m.properties.json);
-    for (const auto& item : properties.items())
-      text += (text.empty() ? " " : ", ") + item.key() + " " +
-              (item.value().is_number() ? brief_quantity(item.value().get<double>(), "1") : item.value().dump());
-    line("  " + m.name + ":" + text);
-  }
-  line("Contacts:");
-  for (const auto& contact : c.contacts)
-    for (const auto& law : contact.laws) line("  " + contact.between[0] + "-" + contact.between[1] + ": " + law.law);
-  if (!sim.presets().empty()) line("Left to presets:");
-  for (const auto& p : sim.presets()) line("  " + p);
-  line("Parts:");
-  for (std::size_t k = 0; k < c.parts.size(); ++k) {
-    const auto faults = sim.world().part_surface(k).faults().describe();
-    line("  " + c.parts[k].name + ": " + c.parts[k].geometry + ", " +
-         std::to_string(sim.world().part_surface(k).element_count()) + " surface elements" +
-         (c.parts[k].motion.empty() ? "" : ", moved by \"" + c.parts[k].motion + "\"") +
-         (faults.empty() ? "" : " (" + faults + ")"));
-  }
-  line("Plugins:");
-  for (const auto& p : sim.provenance())
-    line("  " + p.id + " " + p.version + "  sha256 " + p.sha256.substr(0, 12) + "  " + p.path);
-  if (!c.assumptions.empty()) line("Assumptions:");
-  for (const auto& a : c.assumptions) line("  - " + a);
-  return out;
-}
 
 }  // namespace calx
