@@ -64,6 +64,7 @@ void build_parts(World& w) {
         Surface::build(table, wall.instance->get(), wall.instance->host(), w.c.file + " " + part.pointer));
     wall.motion = part.motion.empty() ? -1 : w.motions.find(part.motion);
     EnginePart e;
+    e.name = part.name;
     e.surface = wall.surface.get();
     e.material = index_of(w.c.materials, part.material);
     e.present = part.present;
