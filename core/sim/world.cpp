@@ -209,7 +209,8 @@ void World::start_stage(std::size_t number, double t) {
   for (const auto& part : s.remove) set_present(part, false, t);
   for (const auto& part : s.add) set_present(part, true, t);
   for (const auto& motion : s.start) motions.start(motions.find(motion), t);
-  events.fire("stage " + s.name, t);
+  // An end written inline is the event "stage <name>" (config), so the beginning has a name of its own.
+  events.fire("stage " + s.name + " begins", t);
 }
 
 void World::handle_events(double t) {
