@@ -38,7 +38,8 @@ void evaluate_block(const LawList& list, BlockScratch& scratch, double dt, doubl
       double* before = scratch.in(CALX_IN_FN_BEFORE);
       for (std::uint32_t i = 0; i < n; ++i)
         before[i] = t == 0 ? 0.0
-                           : scratch.out(0)[i] * scratch.in(CALX_IN_NX)[i] + scratch.out(1)[i] * scratch.in(CALX_IN_NY)[i] +
+                           : scratch.out(0)[i] * scratch.in(CALX_IN_NX)[i] +
+                                 scratch.out(1)[i] * scratch.in(CALX_IN_NY)[i] +
                                  scratch.out(2)[i] * scratch.in(CALX_IN_NZ)[i];
     }
     term.table->eval_f64(&block);

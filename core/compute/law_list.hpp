@@ -10,7 +10,8 @@
 
 namespace calx {
 
-/// Rows of one block. Measured elsewhere and here: 64 to 512 are equally fast; all columns stay in the first-level cache.
+/// Rows of one block. Measured elsewhere and here: 64 to 512 are equally fast; all columns stay in the first-level
+/// cache.
 constexpr std::uint32_t kBlockRows = 256;
 /// Rows between two columns: eight more than the block, because columns a power of two apart share cache sets.
 constexpr std::uint32_t kBlockStride = kBlockRows + 8;
@@ -18,8 +19,8 @@ constexpr std::uint32_t kBlockStride = kBlockRows + 8;
 struct LawTerm {
   const calx_contact_law* table = nullptr;
   std::string name, id;
-  std::vector<double> pair_row;   // for (i, j) in this order
-  std::uint32_t state_offset = 0; // first history column of this term
+  std::vector<double> pair_row;    // for (i, j) in this order
+  std::uint32_t state_offset = 0;  // first history column of this term
 };
 
 /// The laws between an ordered pair of materials.
@@ -27,9 +28,9 @@ struct LawList {
   std::vector<LawTerm> terms;
   std::uint32_t needs = 0;
   std::uint32_t state_count = 0;
-  std::string label;                   // "calcine-steel", for messages
-  std::vector<double> preset;          // per history column
-  std::vector<std::uint8_t> odd;       // per history column: changes sign when i and j trade places
+  std::string label;              // "calcine-steel", for messages
+  std::vector<double> preset;     // per history column
+  std::vector<std::uint8_t> odd;  // per history column: changes sign when i and j trade places
 };
 
 /// Work space of one thread for one block; about 200 kB with 32 history columns.

@@ -47,7 +47,8 @@ ResolvedParameters resolve_parameters(const Parameters& parameters, const std::v
 std::vector<std::pair<std::string, std::string>> parameter_keys(const Parameters& parameters);
 /// What a user may write for a table: field names, one name per vector group, and the "_deg" forms of angles.
 std::vector<std::string> table_keys(const FieldTable& table);
-/// Throws for the first key that is not known: `case.json /materials/calcine/yuong: unknown key; did you mean "young"?`.
+/// Throws for the first key that is not known: `case.json /materials/calcine/yuong: unknown key; did you mean
+/// "young"?`.
 void check_keys(const Parameters& parameters, const std::vector<std::string>& known, const std::string& file);
 
 /// JSON Schema (draft 2020-12) of a case, without plugin parameters; of one table, for `calx plugin schema`.

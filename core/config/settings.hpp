@@ -51,10 +51,10 @@ struct ShapeSettings {
 /// Scale factor applied to a shape, 1 = as drawn.
 struct SizeSettings {
   enum class Kind { fixed, uniform, normal, lognormal, list } kind = Kind::fixed;
-  double scale = 1;                   // fixed; mean of normal; median of lognormal
-  double deviation = 0;               // normal: of the scale; lognormal: of ln(scale)
-  double lowest = 1, highest = 1;     // uniform: the range; normal and lognormal: cut-offs
-  std::vector<double> scales, shares; // list: scales and their shares by mass, which sum to 1
+  double scale = 1;                    // fixed; mean of normal; median of lognormal
+  double deviation = 0;                // normal: of the scale; lognormal: of ln(scale)
+  double lowest = 1, highest = 1;      // uniform: the range; normal and lognormal: cut-offs
+  std::vector<double> scales, shares;  // list: scales and their shares by mass, which sum to 1
 };
 
 /// A volume in the world frame. Box: lo, hi. Cylinder: axis from a to b, radius. Cone: axis from a to b, radius at a,
@@ -74,15 +74,15 @@ struct RegionSettings {
 /// When something happens. Leaf kinds look at the world; all and any combine; after shifts another event.
 struct ConditionSettings {
   enum class Kind { time, mass, count, settled, cycle, after, all, any } kind = Kind::time;
-  double time = 0;                 // time: at this time, s; after: this long after the event, s
-  std::string region;              // mass, count, settled: in this region; empty: the whole domain
-  double value = 0;                // mass: kg; count; cycle: number of completed cycles
-  bool at_least = true;            // mass, count: fires when >= value (else <=)
-  double kinetic_per_particle = 0; // settled: J; 0: the default m g d / 1000 of each particle
-  double hold = 0;                 // settled: for this long, s
-  double not_before = 0;           // settled: earliest time after arming, s
-  std::string event;               // after: which; {"event": "name"} is after with no delay
-  std::string motion;              // cycle: of this motion
+  double time = 0;                       // time: at this time, s; after: this long after the event, s
+  std::string region;                    // mass, count, settled: in this region; empty: the whole domain
+  double value = 0;                      // mass: kg; count; cycle: number of completed cycles
+  bool at_least = true;                  // mass, count: fires when >= value (else <=)
+  double kinetic_per_particle = 0;       // settled: J; 0: the default m g d / 1000 of each particle
+  double hold = 0;                       // settled: for this long, s
+  double not_before = 0;                 // settled: earliest time after arming, s
+  std::string event;                     // after: which; {"event": "name"} is after with no delay
+  std::string motion;                    // cycle: of this motion
   std::vector<ConditionSettings> parts;  // all, any
   std::string pointer;
 };
@@ -96,23 +96,23 @@ struct SourceSettings {
   std::string name, shape, material, pointer;
   SizeSettings size;
   RegionSettings region;
-  double mass = 0;               // kg requested; 0 when count is given
-  std::uint64_t count = 0;       // particles requested; 0 when mass is given
-  double rate = 0;               // kg/s; 0: at once (fill the region)
-  Vec3 velocity;                 // m/s, of new particles
-  std::string when;              // event name; empty: at t = 0
+  double mass = 0;          // kg requested; 0 when count is given
+  std::uint64_t count = 0;  // particles requested; 0 when mass is given
+  double rate = 0;          // kg/s; 0: at once (fill the region)
+  Vec3 velocity;            // m/s, of new particles
+  std::string when;         // event name; empty: at t = 0
   bool random_orientation = true;
   /// Positions given outright instead of a random fill: x y z (m) per particle, optionally with quaternions w x y z.
   std::vector<Vec3> positions;
   std::vector<Quat> orientations;
   std::vector<Vec3> velocities, spins;
-  std::string file;              // absolute path of a CSV with header x_m,y_m,z_m[,vx_m_s,vy_m_s,vz_m_s][,scale]; empty: none
+  std::string file;  // absolute path of a CSV with header x_m,y_m,z_m[,vx_m_s,vy_m_s,vz_m_s][,scale]; empty: none
 };
 
 struct PartSettings {
   std::string name, geometry, material, motion, pointer;
   Parameters parameters;
-  bool present = true;  // in the world from the start; stages and events may add or remove it
+  bool present = true;            // in the world from the start; stages and events may add or remove it
   std::string appears, vanishes;  // event names; empty: never changes
   bool assumed = false;
 };
@@ -120,8 +120,8 @@ struct PartSettings {
 struct MotionSettings {
   std::string name, plugin, pointer;
   Parameters parameters;
-  std::string start;         // event name; empty: t = 0
-  std::string carried_by;    // another motion applied on top (the part's frame moves with it); empty: none
+  std::string start;       // event name; empty: t = 0
+  std::string carried_by;  // another motion applied on top (the part's frame moves with it); empty: none
 };
 
 struct ForceSettings {
@@ -136,15 +136,15 @@ struct SensorSettings {
 };
 
 struct StageSettings {
-  std::string name, until, pointer;            // until: event name; empty: to the end of the run
-  std::vector<std::string> add, remove, start; // part names, part names, motion names
+  std::string name, until, pointer;             // until: event name; empty: to the end of the run
+  std::vector<std::string> add, remove, start;  // part names, part names, motion names
 };
 
 struct TimeSettings {
   enum class Integrator { euler, verlet } integrator = Integrator::euler;
   double rayleigh_fraction = 0.1;
-  double step = 0;  // s; 0: from the limits
-  double end = 0;   // s
+  double step = 0;        // s; 0: from the limits
+  double end = 0;         // s
   std::string end_event;  // stop when it fires; empty: at end
 };
 
@@ -155,9 +155,9 @@ struct DomainSettings {
 };
 
 struct OutputSettings {
-  double frames_every = 0;           // s simulated; 0: none
-  double checkpoint_every_wall = 60; // s of wall time; 0: only at the end and on interruption
-  double checkpoint_every = 0;       // s simulated; 0: off
+  double frames_every = 0;            // s simulated; 0: none
+  double checkpoint_every_wall = 60;  // s of wall time; 0: only at the end and on interruption
+  double checkpoint_every = 0;        // s simulated; 0: off
   bool particles_h5 = true;
 };
 
@@ -166,8 +166,8 @@ struct NeighbourSettings {
 };
 
 struct CaseSettings {
-  std::string file;       // path of the case, for messages
-  std::string folder;     // absolute; relative paths of the case start here
+  std::string file;    // path of the case, for messages
+  std::string folder;  // absolute; relative paths of the case start here
   std::string title;
   Vec3 gravity{0, 0, -9.81};
   DomainSettings domain;

@@ -1,4 +1,5 @@
-// geometry.hpp: the shape of one part in its own frame: triangles and surfaces of revolution with one closest-point rule.
+// geometry.hpp: the shape of one part in its own frame: triangles and surfaces of revolution with one closest-point
+// rule.
 //
 // A point touches a face, an edge or a vertex only where that feature is a local minimum of the distance over the
 // connected surface (its Voronoi region), so that each is found once. Minima whose normals differ by less than the
@@ -16,9 +17,9 @@ namespace calx {
 
 /// The nearest point of a surface to a sphere centre, part frame.
 struct SurfacePoint {
-  Vec3 point;            // m, on the surface
-  Vec3 normal;           // unit, from the surface towards the centre
-  double distance = 0;   // m, from the centre to point, >= 0
+  Vec3 point;           // m, on the surface
+  Vec3 normal;          // unit, from the surface towards the centre
+  double distance = 0;  // m, from the centre to point, >= 0
   std::uint32_t element = 0;
 };
 

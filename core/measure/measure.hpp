@@ -14,8 +14,8 @@ namespace calx {
 struct FieldResult {
   std::string name, unit;
   std::size_t nx = 0, ny = 0;
-  Vec3 origin;          // m, corner of the first cell
-  double cell = 0;      // m
+  Vec3 origin;                 // m, corner of the first cell
+  double cell = 0;             // m
   std::vector<double> values;  // NaN where nothing is
 };
 

@@ -21,8 +21,8 @@ struct PartLoad {
 struct ContactRow {
   std::uint32_t i = 0, j = 0;  // sphere numbers in present rank order
   int part = -1;
-  double overlap = 0;          // m
-  Vec3 normal;                 // from j (or the wall) to i
+  double overlap = 0;  // m
+  Vec3 normal;         // from j (or the wall) to i
 };
 
 /// Energies of the whole run, J. remainder = initial + inserted + wall_work - removed - (kinetic + gravity + elastic +
@@ -31,18 +31,18 @@ struct EnergyLedger {
   bool kept = false;
   double kinetic_translation = 0, kinetic_rotation = 0, gravity = 0, elastic = 0;  // now
   double friction = 0, damping = 0, plastic = 0;                                   // lost so far
-  double wall_work = 0;                       // done by moving parts on particles so far
-  double force_work = 0;                      // done by particle-force plugins so far
-  double inserted = 0, removed = 0;           // brought and taken by particles that came and went
+  double wall_work = 0;              // done by moving parts on particles so far
+  double force_work = 0;             // done by particle-force plugins so far
+  double inserted = 0, removed = 0;  // brought and taken by particles that came and went
   double remainder = 0;
-  double work_done = 0;                       // |gravity work| + |wall work| + inserted kinetic: the scale for remainder
+  double work_done = 0;  // |gravity work| + |wall work| + inserted kinetic: the scale for remainder
 };
 
 /// Particle counts and masses of the whole run. Closes to the particle: inserted = inside + removed.
 struct MassLedger {
   std::uint64_t inserted_count = 0, inside_count = 0, removed_count = 0;
-  double inserted = 0, inside = 0, removed = 0;    // kg
-  double requested = 0, delivered = 0;             // kg, of all sources
+  double inserted = 0, inside = 0, removed = 0;  // kg
+  double requested = 0, delivered = 0;           // kg, of all sources
 };
 
 class WorldView {

@@ -30,7 +30,8 @@ struct Pose {
 class MotionSet {
  public:
   /// table and instance outlive the set. Returns the motion's index. carried_by: index of the motion applied on top of
-  /// this one, or -1; it may be added later. Throws Error(Fault::settings) for motions that carry each other in a circle.
+  /// this one, or -1; it may be added later. Throws Error(Fault::settings) for motions that carry each other in a
+  /// circle.
   int add(const std::string& name, const calx_motion* table, const calx_instance* instance, bool waits_for_start,
           int carried_by);
   int find(const std::string& name) const;  // -1: none
@@ -44,8 +45,8 @@ class MotionSet {
   Pose pose(int motion, double t) const;
   /// True while the pose can still change after t; false while the motion waits for its start.
   bool moving(int motion, double t) const;
-  /// Bound of the speed, m/s, of points within radius, m, of the pivot, carrying motions included. Where a turning motion
-  /// carries one that shifts its pivot, the way of the pivot is sampled.
+  /// Bound of the speed, m/s, of points within radius, m, of the pivot, carrying motions included. Where a turning
+  /// motion carries one that shifts its pivot, the way of the pivot is sampled.
   double top_speed(int motion, double radius) const;
   void save(StateWriter& out) const;
   /// Throws Error(Fault::files) when the checkpoint was written with other motions.
@@ -71,18 +72,18 @@ class MotionSet {
 class EventView {
  public:
   virtual ~EventView() = default;
-  virtual double mass_in(const std::string& region) const = 0;               // kg; "" = everything
+  virtual double mass_in(const std::string& region) const = 0;  // kg; "" = everything
   virtual std::uint64_t count_in(const std::string& region) const = 0;
   /// Largest allowed mean kinetic energy is per_particle J, or m g d / 1000 when 0. False when the region is empty.
   virtual bool settled_in(const std::string& region, double per_particle) const = 0;
-  virtual double cycles_of(const std::string& motion) const = 0;             // completed cycles, 0 before its start
+  virtual double cycles_of(const std::string& motion) const = 0;  // completed cycles, 0 before its start
 };
 
 /// Fires each event once, in the order of the case; an event may follow another within the same step. Conditions that
-/// look at particles (mass, count, settled) are asked only every check interval, s, so that they cost nothing in the step
-/// loop; between two checks they are unknown, and an event that needs one waits.
-/// The parts of "all" are read in order and a later part is armed only while the earlier ones hold: in all [after "poured",
-/// settled], hold and not_before count from "poured". A condition on its own is armed by the first update.
+/// look at particles (mass, count, settled) are asked only every check interval, s, so that they cost nothing in the
+/// step loop; between two checks they are unknown, and an event that needs one waits. The parts of "all" are read in
+/// order and a later part is armed only while the earlier ones hold: in all [after "poured", settled], hold and
+/// not_before count from "poured". A condition on its own is armed by the first update.
 class EventSet {
  public:
   EventSet() = default;
@@ -98,9 +99,9 @@ class EventSet {
   void load(const StateReader& in);
 
  private:
-  struct Settling {      // memory of one settled leaf
-    double armed = -1;   // s, when its event first waited for nothing but it; -1: not yet
-    double since = -1;   // s, since when the region has been settled at each check; -1: it is not
+  struct Settling {     // memory of one settled leaf
+    double armed = -1;  // s, when its event first waited for nothing but it; -1: not yet
+    double since = -1;  // s, since when the region has been settled at each check; -1: it is not
   };
   struct Entry {
     EventSettings settings;

@@ -218,7 +218,8 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
   }
 
   std::vector<std::pair<std::uint32_t, std::uint32_t>> extra;
-  for (std::size_t c = 0; c < chunks.size(); ++c) extra.insert(extra.end(), work_[c].extra.begin(), work_[c].extra.end());
+  for (std::size_t c = 0; c < chunks.size(); ++c)
+    extra.insert(extra.end(), work_[c].extra.begin(), work_[c].extra.end());
   std::sort(extra.begin(), extra.end());
 
   Column<std::size_t> old_row;
@@ -262,8 +263,7 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
     chunk.first_entry = row_[chunk.first_sphere];
     chunk.last_entry = row_[chunk.last_sphere];
   }
-  if (!old_row.empty())
-    carry_history(spec, old_rank, old_row, old_j, old_touching, old_history, old_stride);
+  if (!old_row.empty()) carry_history(spec, old_rank, old_row, old_j, old_touching, old_history, old_stride);
   link_chunks();
 }
 
@@ -319,9 +319,8 @@ void PairList::link_chunks() {
       if (j[e] >= chunk.last_sphere) receiver.push_back(j[e]);
     order.resize(receiver.size());
     for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return chunk_of[receiver[a]] < chunk_of[receiver[b]];
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return chunk_of[receiver[a]] < chunk_of[receiver[b]]; });
     for (std::uint32_t k = 0; k < order.size(); ++k) {
       const std::size_t slot = chunk.first_slot + k;
       const std::uint32_t sphere = receiver[order[k]];

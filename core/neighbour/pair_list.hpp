@@ -34,7 +34,7 @@ struct Wrap {
 
 /// History columns of contacts: how to start, turn round and end a row.
 struct HistorySpec {
-  std::uint32_t columns = 0;  // the largest count over all law lists
+  std::uint32_t columns = 0;      // the largest count over all law lists
   std::vector<std::uint8_t> odd;  // changes sign when i and j trade places; per column
 };
 
@@ -51,13 +51,13 @@ struct Chunk {
 class PairList {
  public:
   std::vector<Chunk> chunks;
-  Column<std::uint32_t> i, j;       // sphere ranks
-  Column<std::uint8_t> touching;    // at the last evaluation
-  Column<double> history;           // column k of entry e at history[k * stride + e]
+  Column<std::uint32_t> i, j;     // sphere ranks
+  Column<std::uint8_t> touching;  // at the last evaluation
+  Column<double> history;         // column k of entry e at history[k * stride + e]
   std::size_t stride = 0;
-  Column<std::uint32_t> cross;      // slot of the n-th entry of a chunk that leaves it, entries in order
+  Column<std::uint32_t> cross;           // slot of the n-th entry of a chunk that leaves it, entries in order
   std::vector<std::size_t> first_cross;  // per chunk, into cross
-  Column<std::uint32_t> slot_sphere;  // receiving sphere of each slot
+  Column<std::uint32_t> slot_sphere;     // receiving sphere of each slot
   Column<Wrench> slot_wrench;
   Column<std::uint8_t> slot_used;
   std::size_t entry_count() const { return i.size(); }

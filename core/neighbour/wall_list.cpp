@@ -28,8 +28,8 @@ void WallList::build(const Particles& p, const PairList& pairs, const std::vecto
         const double reach = s[k].r + margin_factor * margin[p.owner_of(k)] + place.margin;
         const Vec3 local = rotate(conjugate(place.turn), position(s[k]) - place.shift);
         const Box& b = bounds[a];
-        if (local.x < b.lo.x - reach || local.y < b.lo.y - reach || local.z < b.lo.z - reach || local.x > b.hi.x + reach ||
-            local.y > b.hi.y + reach || local.z > b.hi.z + reach)
+        if (local.x < b.lo.x - reach || local.y < b.lo.y - reach || local.z < b.lo.z - reach ||
+            local.x > b.hi.x + reach || local.y > b.hi.y + reach || local.z > b.hi.z + reach)
           continue;
         const auto first = static_cast<std::uint32_t>(w.elements.size());
         place.surface->gather(local, reach, w.elements);
@@ -96,8 +96,7 @@ void WallList::build(const Particles& p, const PairList& pairs, const std::vecto
         touching[to] = old_touching[from];
         normal[to] = old_normal[from];
         if (!touching[to]) continue;
-        for (std::uint32_t k = 0; k < spec.columns; ++k)
-          history[k * stride + to] = old_history[k * old_stride + from];
+        for (std::uint32_t k = 0; k < spec.columns; ++k) history[k * stride + to] = old_history[k * old_stride + from];
       }
     }
   }

@@ -1,6 +1,6 @@
-// wall_list.hpp: which spheres may touch which parts before the next rebuild, with the surface elements near each and the
-// contact history. One row per (sphere, part); a row holds up to kWallContacts contacts, told apart by their normals, so
-// that a particle rolling from facet to facet or round an edge keeps its history.
+// wall_list.hpp: which spheres may touch which parts before the next rebuild, with the surface elements near each and
+// the contact history. One row per (sphere, part); a row holds up to kWallContacts contacts, told apart by their
+// normals, so that a particle rolling from facet to facet or round an edge keeps its history.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -19,28 +19,29 @@ constexpr std::uint32_t kWallContacts = 4;
 struct PartPlace {
   const Surface* surface = nullptr;
   Quat turn;
-  Vec3 shift;          // m
-  double margin = 0;   // m, how far any point of it may move before the next rebuild
+  Vec3 shift;         // m
+  double margin = 0;  // m, how far any point of it may move before the next rebuild
   bool present = true;
 };
 
 class WallList {
  public:
-  Column<std::uint32_t> sphere, part;       // per row, rising (sphere, part)
-  Column<std::uint32_t> first_element;      // per row, into elements; one more at the end
+  Column<std::uint32_t> sphere, part;   // per row, rising (sphere, part)
+  Column<std::uint32_t> first_element;  // per row, into elements; one more at the end
   std::vector<std::uint32_t> elements;
-  std::vector<std::size_t> first_row;       // per chunk; one more at the end
+  std::vector<std::size_t> first_row;  // per chunk; one more at the end
   // Per contact slot, kWallContacts consecutive slots per row.
   Column<std::uint8_t> touching;
-  Column<Vec3> normal;                      // part frame, at the last evaluation
-  Column<double> history;                   // column k of slot c at history[k * stride + c]
+  Column<Vec3> normal;     // part frame, at the last evaluation
+  Column<double> history;  // column k of slot c at history[k * stride + c]
   std::size_t stride = 0;
   std::size_t row_count() const { return sphere.size(); }
 
   /// old_rank as in PairList::build. Rows follow the chunks of pairs. margin_factor: 1 right after the pair list was
   /// built; 2 when particles may already have used up their margin and may go back as far.
   void build(const Particles& particles, const PairList& pairs, const std::vector<PartPlace>& parts,
-             const Column<double>& margin, double margin_factor, const HistorySpec& spec, const std::uint32_t* old_rank);
+             const Column<double>& margin, double margin_factor, const HistorySpec& spec,
+             const std::uint32_t* old_rank);
   std::size_t memory_bytes() const;
 
  private:

@@ -45,7 +45,8 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
   // Moduli also give the Rayleigh limit of the time step, whatever the law reads.
   std::vector<std::string> known{"density", "young", "poisson"};
   for (const auto& contact : settings.contacts) {
-    const std::uint32_t a = material_index(settings, contact.between[0]), b = material_index(settings, contact.between[1]);
+    const std::uint32_t a = material_index(settings, contact.between[0]),
+                        b = material_index(settings, contact.between[1]);
     auto list_ab = std::make_unique<LawList>(), list_ba = std::make_unique<LawList>();
     list_ab->label = contact.between[0] + "-" + contact.between[1];
     list_ba->label = contact.between[1] + "-" + contact.between[0];

@@ -14,11 +14,11 @@ struct CaseLaws {
   std::vector<std::unique_ptr<LawList>> lists;
   std::vector<const LawList*> matrix;  // [a * material_count + b], null where no law is given
   std::vector<std::unique_ptr<ContactLaw>> laws;
-  std::vector<std::string> presets;    // "calcine-calcine calx.epam: pull_off = 0 N (preset)", for calx check
+  std::vector<std::string> presets;  // "calcine-calcine calx.epam: pull_off = 0 N (preset)", for calx check
 };
 
-/// Throws Error(Fault::plugin) for a law that cannot be loaded, Error(Fault::settings) for parameters it refuses and for
-/// material keys that no law knows.
+/// Throws Error(Fault::plugin) for a law that cannot be loaded, Error(Fault::settings) for parameters it refuses and
+/// for material keys that no law knows.
 CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry);
 
 }  // namespace calx

@@ -22,9 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string clock_text(double s) {
   char text[40];
@@ -47,8 +45,8 @@ std::string utc_now() {
   return text;
 }
 
-/// Things done at multiples of an interval of simulated time. The next one follows from the time alone, so a resumed run
-/// goes on where it stood.
+/// Things done at multiples of an interval of simulated time. The next one follows from the time alone, so a resumed
+/// run goes on where it stood.
 struct Clock {
   double every = 0;
   double next = 0;
@@ -92,10 +90,12 @@ class Run {
   void open() {
     const bool held = fs::exists(dir_ + "/summary.json") || fs::exists(dir_ + "/checkpoint.h5");
     if (held && !o_.resume && !o_.overwrite)
-      throw Error(Fault::files, dir_ + ": already holds a run; use --resume to go on, --overwrite to start anew, or -o DIR");
+      throw Error(Fault::files,
+                  dir_ + ": already holds a run; use --resume to go on, --overwrite to start anew, or -o DIR");
     if (o_.overwrite && !o_.resume) {
-      for (const char* name : {"frames", "series", "frames.pvd", "particles.h5", "checkpoint.h5", "checkpoint.previous.h5",
-                               "summary.json", "fields.json", "report.html", "run.log", "case.json"})
+      for (const char* name :
+           {"frames", "series", "frames.pvd", "particles.h5", "checkpoint.h5", "checkpoint.previous.h5", "summary.json",
+            "fields.json", "report.html", "run.log", "case.json"})
         fs::remove_all(dir_ + "/" + name);
     }
     std::error_code failed;
@@ -216,9 +216,9 @@ class Run {
     const double t = sim_.time(), share = (t - first_time_) / std::max(end - first_time_, 1e-300);
     const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
     char text[200];
-    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left", t, end,
-                  100 * share, sim_.world().particles().count(), particle_steps_ / std::max(now - start_, 1e-9) * 1e-6,
-                  clock_text(left).c_str());
+    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left", t,
+                  end, 100 * share, sim_.world().particles().count(),
+                  particle_steps_ / std::max(now - start_, 1e-9) * 1e-6, clock_text(left).c_str());
     o_.progress(text);
   }
 
@@ -254,7 +254,9 @@ std::string run_folder(const RunOptions& options) {
   return p.string() + ".out";
 }
 
-std::string run_case(const RunOptions& options) { return Run(options, read_case(options.case_path, options.overrides)).go(); }
+std::string run_case(const RunOptions& options) {
+  return Run(options, read_case(options.case_path, options.overrides)).go();
+}
 
 std::string check_case(const RunOptions& options) {
   Simulation sim(read_case(options.case_path, options.overrides), options.simulation);
@@ -265,8 +267,9 @@ std::string check_case(const RunOptions& options) {
   line("");
   line("Time step " + brief_quantity(sim.time_step(), "s") + (c.time.step > 0 ? " (given)" : "") + "; limits:");
   for (const auto& l : sim.step_limits())
-    line("  " + std::string(l.binds ? "* " : "  ") + l.name + std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') +
-         brief_quantity(l.seconds, "s") + "  " + l.where + (l.binds ? "  <- binds" : ""));
+    line("  " + std::string(l.binds ? "* " : "  ") + l.name +
+         std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') + brief_quantity(l.seconds, "s") + "  " + l.where +
+         (l.binds ? "  <- binds" : ""));
   double mass = 0, particles = 0, spheres = 0;
   const auto& shapes = sim.world().particles().shapes;
   for (const auto& s : c.sources) {
@@ -277,7 +280,9 @@ std::string check_case(const RunOptions& options) {
     for (const auto& m : c.materials)
       if (m.name == s.material) density = m.density;
     const double each = density * volume * std::pow(s.size.kind == SizeSettings::Kind::fixed ? s.size.scale : 1.0, 3);
-    const double n = s.count > 0 ? static_cast<double>(s.count) : s.mass > 0 ? s.mass / each : static_cast<double>(s.positions.size());
+    const double n = s.count > 0  ? static_cast<double>(s.count)
+                     : s.mass > 0 ? s.mass / each
+                                  : static_cast<double>(s.positions.size());
     mass += n * each;
     particles += n;
     spheres += n * static_cast<double>(members);
@@ -313,7 +318,8 @@ std::string check_case(const RunOptions& options) {
          (faults.empty() ? "" : " (" + faults + ")"));
   }
   line("Plugins:");
-  for (const auto& p : sim.provenance()) line("  " + p.id + " " + p.version + "  sha256 " + p.sha256.substr(0, 12) + "  " + p.path);
+  for (const auto& p : sim.provenance())
+    line("  " + p.id + " " + p.version + "  sha256 " + p.sha256.substr(0, 12) + "  " + p.path);
   if (!c.assumptions.empty()) line("Assumptions:");
   for (const auto& a : c.assumptions) line("  - " + a);
   return out;

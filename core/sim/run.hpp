@@ -28,8 +28,8 @@ struct RunOptions {
 /// The folder a run of that case writes to.
 std::string run_folder(const RunOptions& options);
 
-/// Runs the case. Returns the folder. Throws Error; whatever was written before stays, and summary.json says how the run
-/// ended ("done", "interrupted", "stopped").
+/// Runs the case. Returns the folder. Throws Error; whatever was written before stays, and summary.json says how the
+/// run ended ("done", "interrupted", "stopped").
 std::string run_case(const RunOptions& options);
 
 /// What `calx check` prints: materials, limits of the time step, particles, memory, cost, device plan, plugins.

@@ -83,7 +83,8 @@ double fall_speed(const World& w) {
     double top = 1e300, bottom = -1e300;
     auto grow = [&](const Box& b, double& low, double& high) {
       for (int corner = 0; corner < 8; ++corner) {
-        const double h = dot(down, {corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z});
+        const double h =
+            dot(down, {corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z});
         low = std::min(low, h);
         high = std::max(high, h);
       }
@@ -117,8 +118,9 @@ StepInputs step_inputs(const World& w) {
     const Box b = w.walls[k].surface->bounds();
     double radius = 0;
     for (int corner = 0; corner < 8; ++corner)
-      radius = std::max(radius, norm(Vec3{corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y,
-                                          corner & 4 ? b.hi.z : b.lo.z} - pivot));
+      radius = std::max(
+          radius,
+          norm(Vec3{corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z} - pivot));
     const double speed = w.motions.top_speed(w.walls[k].motion, radius);
     if (speed > in.wall_speed) {
       in.wall_speed = speed;
@@ -144,7 +146,8 @@ void build_engine(World& w, int threads) {
   for (const auto& m : c.materials) e.material_names.push_back(m.name);
   for (const auto& f : c.forces) {
     InstancePtr instance = w.registry->create(f.plugin, CALX_PARTICLE_FORCE, f.parameters, c.file);
-    e.forces.push_back({static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get()});
+    e.forces.push_back(
+        {static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get()});
     w.force_instances.push_back(std::move(instance));
   }
   e.prepare(threads);
@@ -171,7 +174,8 @@ struct Simulation::Impl {
   World w;
 };
 
-Simulation::Simulation(CaseFile input, const SimulationOptions& options) : impl_(std::make_unique<Impl>(std::move(input))) {
+Simulation::Simulation(CaseFile input, const SimulationOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(input))) {
   World& w = impl_->w;
   w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins);
   build_shapes(w);
@@ -184,8 +188,8 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options) : impl_
     std::uint32_t shape = 0;
     while (w.c.shapes[shape].name != s.shape) ++shape;
     const std::uint32_t material = index_of(w.c.materials, s.material);
-    w.sources.emplace_back(s, w.c.file, w.engine.particles.shapes[shape], shape, material, w.c.materials[material].density,
-                           w.c.seed, k);
+    w.sources.emplace_back(s, w.c.file, w.engine.particles.shapes[shape], shape, material,
+                           w.c.materials[material].density, w.c.seed, k);
   }
   const StepInputs in = step_inputs(w);
   w.limits = time_step_limits(in);
@@ -238,7 +242,8 @@ void Simulation::step() {
                                        std::to_string(w.engine.particles.id[p]) + " left the domain at (" +
                                        format_number(b.x) + ", " + format_number(b.y) + ", " + format_number(b.z) +
                                        ") m with velocity (" + format_number(b.vx) + ", " + format_number(b.vy) + ", " +
-                                       format_number(b.vz) + ") m/s; make \"domain\" larger or set \"on_leave\" to "
+                                       format_number(b.vz) +
+                                       ") m/s; make \"domain\" larger or set \"on_leave\" to "
                                        "\"delete\" or \"count\"");
     }
     w.leave(report.outside);
@@ -274,7 +279,7 @@ void Simulation::save(StateWriter& out) const {
   out.put_number("time_step", w.dt, "s");
   out.put_count("stage", w.stage);
   out.put_count("ended", w.ended);
-  const double numbers[] = {w.energy_inserted, w.energy_removed,  w.energy_leaving,
+  const double numbers[] = {w.energy_inserted,  w.energy_removed,  w.energy_leaving,
                             w.kinetic_inserted, w.ledger.inserted, w.ledger.removed};
   out.put("ledger/numbers", numbers, 6, "J,J,J,J,kg,kg");
   const std::uint64_t counts[] = {w.ledger.inserted_count, w.ledger.removed_count};
@@ -292,8 +297,9 @@ void Simulation::save(StateWriter& out) const {
 void Simulation::load(const StateReader& in) {
   World& w = impl_->w;
   if (in.get_number("time_step") != w.dt)
-    throw Error(Fault::files, "checkpoint: written with a time step of " + format_quantity(in.get_number("time_step"), "s") +
-                                  ", this case has " + format_quantity(w.dt, "s"));
+    throw Error(Fault::files, "checkpoint: written with a time step of " +
+                                  format_quantity(in.get_number("time_step"), "s") + ", this case has " +
+                                  format_quantity(w.dt, "s"));
   w.steps = in.get_count("steps");
   w.now = static_cast<double>(w.steps) * w.dt;
   w.stage = in.get_count("stage");

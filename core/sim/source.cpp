@@ -23,8 +23,13 @@ constexpr int kTries = 60;
 
 Source::Source(const SourceSettings& settings, const std::string& file, const Shape& shape, std::uint32_t shape_index,
                std::uint32_t material, double density, std::uint64_t seed, std::uint64_t stream)
-    : settings_(settings), file_(file), shape_(&shape), shape_index_(shape_index), material_(material),
-      density_(density), random_(seed, 1000 + stream) {
+    : settings_(settings),
+      file_(file),
+      shape_(&shape),
+      shape_index_(shape_index),
+      material_(material),
+      density_(density),
+      random_(seed, 1000 + stream) {
   if (settings.when.empty()) start_ = 0;
   read_given();
 }
@@ -58,8 +63,10 @@ Box Source::bounds() const {
 double Source::draw_scale() {
   const SizeSettings& z = settings_.size;
   switch (z.kind) {
-    case SizeSettings::Kind::fixed: return z.scale;
-    case SizeSettings::Kind::uniform: return random_.uniform(z.lowest, z.highest);
+    case SizeSettings::Kind::fixed:
+      return z.scale;
+    case SizeSettings::Kind::uniform:
+      return random_.uniform(z.lowest, z.highest);
     case SizeSettings::Kind::normal:
       for (;;) {
         const double s = z.scale + z.deviation * random_.normal();
@@ -70,7 +77,8 @@ double Source::draw_scale() {
         const double s = z.scale * std::exp(z.deviation * random_.normal());
         if (s >= z.lowest && s <= z.highest) return s;
       }
-    case SizeSettings::Kind::list: break;
+    case SizeSettings::Kind::list:
+      break;
   }
   // Shares are by mass; a particle of scale s is drawn with weight share / s^3.
   double total = 0;
@@ -86,7 +94,8 @@ double Source::draw_scale() {
 Quat Source::draw_turn() {
   if (!settings_.random_orientation || shape_->single()) return {};
   // Uniform over rotations (Shoemake 1992).
-  const double u = random_.uniform(), a = 6.283185307179586 * random_.uniform(), b = 6.283185307179586 * random_.uniform();
+  const double u = random_.uniform(), a = 6.283185307179586 * random_.uniform(),
+               b = 6.283185307179586 * random_.uniform();
   const double p = std::sqrt(1 - u), q = std::sqrt(u);
   return {q * std::cos(b), p * std::sin(a), p * std::cos(a), q * std::sin(b)};
 }
@@ -169,8 +178,8 @@ void Source::check_given(const Obstacles& obstacles) const {
     for (const auto& m : shape_->members) {
       spheres[k].push_back({seed.x + rotate(q, seed.scale * m.at), seed.scale * m.radius});
       if (!obstacles.free(spheres[k].back().x, (1 - kAccepted) * spheres[k].back().r))
-        throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particle number " + std::to_string(k) + " at (" +
-                                         format_number(seed.x.x) + ", " + format_number(seed.x.y) + ", " +
+        throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particle number " + std::to_string(k) +
+                                         " at (" + format_number(seed.x.x) + ", " + format_number(seed.x.y) + ", " +
                                          format_number(seed.x.z) +
                                          ") m overlaps a particle of another source or a part by more than 5 % of its "
                                          "radius; move it away");
@@ -186,11 +195,11 @@ void Source::check_given(const Obstacles& obstacles) const {
                 for (const Ball& o : spheres[other]) {
                   const double overlap = s.r + o.r - norm(obstacles.nearest(s.x - o.x)), least = std::min(s.r, o.r);
                   if (overlap > kAccepted * least)
-                    throw Error(Fault::settings,
-                                file_ + " " + settings_.pointer + ": particles number " + std::to_string(other) +
-                                    " and " + std::to_string(k) + " overlap by " + brief_quantity(overlap, "m") +
-                                    " at the start, " + format_number(std::round(100 * overlap / least)) +
-                                    " % of the radius; at most 5 % is accepted, move them apart");
+                    throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particles number " +
+                                                     std::to_string(other) + " and " + std::to_string(k) +
+                                                     " overlap by " + brief_quantity(overlap, "m") + " at the start, " +
+                                                     format_number(std::round(100 * overlap / least)) +
+                                                     " % of the radius; at most 5 % is accepted, move them apart");
                 }
           }
     cells[key(seed.x, 0, 0, 0)].push_back(k);
@@ -209,7 +218,8 @@ std::vector<Seed> Source::fill(const Obstacles& obstacles) {
     mass += mass_of(s);
   }
   // Sites of a cubic lattice, as wide as the number of particles allows, narrowed until all find a place.
-  double pitch = std::max(tight, 1.3 * std::cbrt(settings_.region.volume() / static_cast<double>(std::max<std::size_t>(scales.size(), 1))));
+  double pitch = std::max(
+      tight, 1.3 * std::cbrt(settings_.region.volume() / static_cast<double>(std::max<std::size_t>(scales.size(), 1))));
   // Where the region meets itself across a periodic face, its last sites keep half a pitch from it as the first do.
   const Vec3 side = box.hi - box.lo;
   bool meets[3];
@@ -235,11 +245,11 @@ std::vector<Seed> Source::fill(const Obstacles& obstacles) {
   }
   if (sites.size() < scales.size()) {
     const double fits = mass * static_cast<double>(sites.size()) / static_cast<double>(scales.size());
-    throw Error(Fault::settings,
-                file_ + " " + settings_.pointer + ": the region cannot hold " + brief_quantity(mass, "kg") + " (" +
-                    std::to_string(scales.size()) + " particles); without overlaps about " + brief_quantity(fits, "kg") +
-                    " (" + std::to_string(sites.size()) +
-                    " particles) fit. Make the region larger, ask for less, or give a rate");
+    throw Error(Fault::settings, file_ + " " + settings_.pointer + ": the region cannot hold " +
+                                     brief_quantity(mass, "kg") + " (" + std::to_string(scales.size()) +
+                                     " particles); without overlaps about " + brief_quantity(fits, "kg") + " (" +
+                                     std::to_string(sites.size()) +
+                                     " particles) fit. Make the region larger, ask for less, or give a rate");
   }
   std::vector<Seed> out;
   const double play = std::max(0.0, std::min(0.5 * pitch, 1.5 * bound) - bound);
@@ -344,30 +354,46 @@ std::vector<Seed> read_seeds(const std::string& path) {
       }
       while (used > 0 && used < cell.size() && cell[used] == ' ') ++used;
       if (used == 0 || used < cell.size() || k >= header.size() || !std::isfinite(v))
-        throw Error(Fault::files, path + ":" + std::to_string(number) + ": \"" + cell + "\" is not a finite number of a known column");
+        throw Error(Fault::files, path + ":" + std::to_string(number) + ": \"" + cell +
+                                      "\" is not a finite number of a known column");
       const std::string& h = header[k];
-      if (h == "x_m") s.x.x = v;
-      else if (h == "y_m") s.x.y = v;
-      else if (h == "z_m") s.x.z = v;
-      else if (h == "vx_m_s") s.v.x = v;
-      else if (h == "vy_m_s") s.v.y = v;
-      else if (h == "vz_m_s") s.v.z = v;
-      else if (h == "wx_rad_s") s.w.x = v;
-      else if (h == "wy_rad_s") s.w.y = v;
-      else if (h == "wz_rad_s") s.w.z = v;
-      else if (h == "qw_1") s.turn.w = v;
-      else if (h == "qx_1") s.turn.x = v;
-      else if (h == "qy_1") s.turn.y = v;
-      else if (h == "qz_1") s.turn.z = v;
-      else if (h == "scale") s.scale = v;
-      else throw Error(Fault::files, path + ":1: column \"" + h + "\" is not known");
+      if (h == "x_m")
+        s.x.x = v;
+      else if (h == "y_m")
+        s.x.y = v;
+      else if (h == "z_m")
+        s.x.z = v;
+      else if (h == "vx_m_s")
+        s.v.x = v;
+      else if (h == "vy_m_s")
+        s.v.y = v;
+      else if (h == "vz_m_s")
+        s.v.z = v;
+      else if (h == "wx_rad_s")
+        s.w.x = v;
+      else if (h == "wy_rad_s")
+        s.w.y = v;
+      else if (h == "wz_rad_s")
+        s.w.z = v;
+      else if (h == "qw_1")
+        s.turn.w = v;
+      else if (h == "qx_1")
+        s.turn.x = v;
+      else if (h == "qy_1")
+        s.turn.y = v;
+      else if (h == "qz_1")
+        s.turn.z = v;
+      else if (h == "scale")
+        s.scale = v;
+      else
+        throw Error(Fault::files, path + ":1: column \"" + h + "\" is not known");
     }
     if (k != header.size())
       throw Error(Fault::files, path + ":" + std::to_string(number) + ": " + std::to_string(k) + " values under " +
                                     std::to_string(header.size()) + " columns");
     if (!(s.scale > 0))
-      throw Error(Fault::files, path + ":" + std::to_string(number) + ": a scale of " + format_number(s.scale) +
-                                    "; must be above 0");
+      throw Error(Fault::files,
+                  path + ":" + std::to_string(number) + ": a scale of " + format_number(s.scale) + "; must be above 0");
     out.push_back(s);
   }
   return out;

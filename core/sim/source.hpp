@@ -42,7 +42,9 @@ class Source {
   std::uint32_t material() const { return material_; }
   bool started() const { return start_ >= 0; }
   bool exhausted() const { return exhausted_; }
-  void start(double t) { if (start_ < 0) start_ = t; }
+  void start(double t) {
+    if (start_ < 0) start_ = t;
+  }
   /// True when new particles are due at time t.
   bool due(double t) const;
   /// Largest sphere about a particle of this source, m.
@@ -87,8 +89,8 @@ class Source {
   bool exhausted_ = false;
 };
 
-/// Rows of a CSV with header x_m,y_m,z_m and optionally vx_m_s.. , wx_rad_s.., qw_1.., scale. Throws Error(Fault::files)
-/// with the line number.
+/// Rows of a CSV with header x_m,y_m,z_m and optionally vx_m_s.. , wx_rad_s.., qw_1.., scale. Throws
+/// Error(Fault::files) with the line number.
 std::vector<Seed> read_seeds(const std::string& path);
 
 }  // namespace calx

@@ -31,11 +31,16 @@ Json mass_json(const WorldView& world) {
       if (world.in_region(r.name, position(b))) mass += b.m;
     regions[r.name] = mass;
   }
-  return {{"requested", l.requested},          {"delivered", l.delivered},
-          {"inserted", l.inserted},            {"inside", l.inside},
-          {"left", l.removed},                 {"inserted_particles", l.inserted_count},
-          {"inside_particles", l.inside_count}, {"left_particles", l.removed_count},
-          {"closes", l.inserted_count == l.inside_count + l.removed_count}, {"regions", regions}};
+  return {{"requested", l.requested},
+          {"delivered", l.delivered},
+          {"inserted", l.inserted},
+          {"inside", l.inside},
+          {"left", l.removed},
+          {"inserted_particles", l.inserted_count},
+          {"inside_particles", l.inside_count},
+          {"left_particles", l.removed_count},
+          {"closes", l.inserted_count == l.inside_count + l.removed_count},
+          {"regions", regions}};
 }
 
 Json energy_json(const EnergyLedger& e) {
@@ -85,7 +90,8 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
     const auto columns = sensor.columns();
     for (std::size_t m = 0; m < columns.size() && k < facts.last.size() && m < facts.last[k].size(); ++m)
       last[columns[m]] = number(facts.last[k][m]);
-    j["sensors"][sensor.name()] = {{"kind", sensor.kind()}, {"every", sensor.every()}, {"columns", columns}, {"last", last}};
+    j["sensors"][sensor.name()] = {
+        {"kind", sensor.kind()}, {"every", sensor.every()}, {"columns", columns}, {"last", last}};
   }
   j["events"] = Json::array();
   for (const auto& e : facts.events) j["events"].push_back({{"name", e.first}, {"time", e.second}});

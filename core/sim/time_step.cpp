@@ -71,10 +71,10 @@ std::vector<StepLimit> time_step_limits(const StepInputs& in) {
     const auto ea = elastic_of(ma, c.file);
     if (ea && ea->young > 0) {
       const double shear = ea->young / (2 * (1 + ea->poisson));
-      const double rayleigh =
-          kPi * small.radius * std::sqrt(ma.density / shear) / (0.1631 * ea->poisson + 0.8766);
-      limits.push_back({"rayleigh", brief(100 * c.time.rayleigh_fraction) + " % of " + brief(rayleigh) +
-                                        " s, " + ma.name + " sphere of radius " + brief(small.radius) + " m",
+      const double rayleigh = kPi * small.radius * std::sqrt(ma.density / shear) / (0.1631 * ea->poisson + 0.8766);
+      limits.push_back({"rayleigh",
+                        brief(100 * c.time.rayleigh_fraction) + " % of " + brief(rayleigh) + " s, " + ma.name +
+                            " sphere of radius " + brief(small.radius) + " m",
                         c.time.rayleigh_fraction * rayleigh, false});
     }
     for (std::size_t b = 0; b < n; ++b) {
@@ -89,12 +89,13 @@ std::vector<StepLimit> time_step_limits(const StepInputs& in) {
       double overlap = 0.01 * small.radius;
       const auto eb = elastic_of(c.materials[b], c.file);
       if (ea && eb && in.particle_speed > 0) {
-        const double e_star = 1 / ((1 - ea->poisson * ea->poisson) / ea->young + (1 - eb->poisson * eb->poisson) / eb->young);
+        const double e_star =
+            1 / ((1 - ea->poisson * ea->poisson) / ea->young + (1 - eb->poisson * eb->poisson) / eb->young);
         const double k = 4.0 / 3 * e_star * std::sqrt(r_eff), v = in.particle_speed;
         overlap = std::pow(5 * m_eff * v * v / (4 * k), 0.4);
         const double collision = 2.87 * std::pow(m_eff * m_eff / (r_eff * e_star * e_star * v), 0.2);
-        limits.push_back({"hertz", "1/20 of the collision time at " + brief(v) + " m/s, " + list->label,
-                          collision / 20, false});
+        limits.push_back(
+            {"hertz", "1/20 of the collision time at " + brief(v) + " m/s, " + list->label, collision / 20, false});
       }
       double inverse_square = 0;
       for (const auto& term : list->terms) {
@@ -103,14 +104,15 @@ std::vector<StepLimit> time_step_limits(const StepInputs& in) {
         if (dt > 0) inverse_square += 1 / (dt * dt);
       }
       if (inverse_square > 0)
-        limits.push_back({"law", list->label + " at an overlap of " + brief(overlap) + " m",
-                          1 / std::sqrt(inverse_square), false});
+        limits.push_back(
+            {"law", list->label + " at an overlap of " + brief(overlap) + " m", 1 / std::sqrt(inverse_square), false});
     }
   }
   if (in.wall_speed > 0 && smallest_radius < 1e299)
-    limits.push_back({"wall", "part \"" + in.fastest_part + "\" at " + brief(in.wall_speed) +
-                                  " m/s moves 2 % of the smallest radius",
-                      0.02 * smallest_radius / in.wall_speed, false});
+    limits.push_back(
+        {"wall",
+         "part \"" + in.fastest_part + "\" at " + brief(in.wall_speed) + " m/s moves 2 % of the smallest radius",
+         0.02 * smallest_radius / in.wall_speed, false});
   auto least = std::min_element(limits.begin(), limits.end(),
                                 [](const StepLimit& a, const StepLimit& b) { return a.seconds < b.seconds; });
   if (least != limits.end()) least->binds = true;
@@ -122,8 +124,9 @@ double choose_step(const StepInputs& in, const std::vector<StepLimit>& limits) {
   if (c.time.step <= 0) {
     for (const auto& limit : limits)
       if (limit.binds) return limit.seconds;
-    throw Error(Fault::settings, c.file + " /time: no limit is known for the time step (no source, or a law without a "
-                                          "stable step and materials without young and poisson); give \"step\" in s");
+    throw Error(Fault::settings, c.file +
+                                     " /time: no limit is known for the time step (no source, or a law without a "
+                                     "stable step and materials without young and poisson); give \"step\" in s");
   }
   for (const auto& limit : limits) {
     const double most = limit.name == "rayleigh" ? limit.seconds * 0.5 / c.time.rayleigh_fraction
@@ -132,8 +135,8 @@ double choose_step(const StepInputs& in, const std::vector<StepLimit>& limits) {
                                                  : 4 * limit.seconds;
     if (c.time.step > most)
       throw Error(Fault::settings, c.file + " /time/step: " + brief_quantity(c.time.step, "s") +
-                                       " is above the limit of " + brief_quantity(most, "s") + " (" + limit.name + ": " +
-                                       limit.where + "); at most " + brief_quantity(limit.seconds, "s") +
+                                       " is above the limit of " + brief_quantity(most, "s") + " (" + limit.name +
+                                       ": " + limit.where + "); at most " + brief_quantity(limit.seconds, "s") +
                                        " is advised, or leave \"step\" out");
   }
   return c.time.step;

@@ -25,8 +25,8 @@ struct StepInputs {
 /// The smallest is marked. Throws Error(Fault::settings) when there is none and the case gives no step.
 std::vector<StepLimit> time_step_limits(const StepInputs& in);
 
-/// The step to use: the case's own, or the smallest limit. Throws Error(Fault::settings) when the case's own is beyond what
-/// is stable: half the Rayleigh time, three times a law's limit, five times the wall limit.
+/// The step to use: the case's own, or the smallest limit. Throws Error(Fault::settings) when the case's own is beyond
+/// what is stable: half the Rayleigh time, three times a law's limit, five times the wall limit.
 double choose_step(const StepInputs& in, const std::vector<StepLimit>& limits);
 
 }  // namespace calx

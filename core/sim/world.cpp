@@ -74,7 +74,8 @@ class WorldObstacles final : public Obstacles {
     double r;
   };
   std::array<std::int64_t, 3> key(const Vec3& x, int a, int b, int c) const {
-    return {static_cast<std::int64_t>(std::floor(x.x / cell_)) + a, static_cast<std::int64_t>(std::floor(x.y / cell_)) + b,
+    return {static_cast<std::int64_t>(std::floor(x.x / cell_)) + a,
+            static_cast<std::int64_t>(std::floor(x.y / cell_)) + b,
             static_cast<std::int64_t>(std::floor(x.z / cell_)) + c};
   }
   const World& world_;
@@ -184,8 +185,9 @@ EnergyLedger World::energy() const {
   l.force_work = e.force_work;
   l.inserted = energy_inserted;
   l.removed = energy_removed;
-  l.remainder = l.inserted + l.wall_work + l.force_work - l.removed -
-                (l.kinetic_translation + l.kinetic_rotation + l.gravity + l.elastic + l.friction + l.damping + l.plastic);
+  l.remainder =
+      l.inserted + l.wall_work + l.force_work - l.removed -
+      (l.kinetic_translation + l.kinetic_rotation + l.gravity + l.elastic + l.friction + l.damping + l.plastic);
   l.work_done = std::fabs(e.gravity_work) + std::fabs(e.wall_work) + std::fabs(e.force_work) + kinetic_inserted;
   return l;
 }
@@ -212,7 +214,8 @@ void World::place_parts(double t) {
   for (std::size_t k = 0; k < walls.size(); ++k) {
     if (walls[k].motion < 0) continue;
     engine.parts[k].pose = motions.pose(walls[k].motion, t);
-    engine.parts[k].moves = motions.started(walls[k].motion) || c.motions[static_cast<std::size_t>(walls[k].motion)].carried_by != "";
+    engine.parts[k].moves =
+        motions.started(walls[k].motion) || c.motions[static_cast<std::size_t>(walls[k].motion)].carried_by != "";
   }
 }
 

@@ -67,9 +67,7 @@ struct World final : WorldView, EventView {
   bool part_present(std::size_t part) const override { return engine.parts[part].present; }
   const Surface& part_surface(std::size_t part) const override { return *walls[part].surface; }
   Pose part_pose(std::size_t part) const override { return engine.parts[part].pose; }
-  PartLoad part_load(std::size_t part) const override {
-    return {engine.parts[part].force, engine.parts[part].torque};
-  }
+  PartLoad part_load(std::size_t part) const override { return {engine.parts[part].force, engine.parts[part].torque}; }
   std::vector<ContactRow> contacts() const override;
   std::vector<std::uint32_t> contact_counts() const override;
   EnergyLedger energy() const override;

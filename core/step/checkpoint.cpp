@@ -67,9 +67,17 @@ void Engine::save(StateWriter& out) const {
       if (walls_.touching[s]) column.push_back(walls_.history[k * walls_.stride + s]);
     out.put("contacts/walls/history" + std::to_string(k), column.data(), column.size(), "see contacts/layout");
   }
-  const double sums[] = {energy_.kinetic_translation, energy_.kinetic_rotation, energy_.gravity,  energy_.elastic,
-                         energy_.friction,            energy_.damping,          energy_.plastic,  energy_.wall_work,
-                         energy_.force_work,          energy_.gravity_work,     energy_.wrapped};
+  const double sums[] = {energy_.kinetic_translation,
+                         energy_.kinetic_rotation,
+                         energy_.gravity,
+                         energy_.elastic,
+                         energy_.friction,
+                         energy_.damping,
+                         energy_.plastic,
+                         energy_.wall_work,
+                         energy_.force_work,
+                         energy_.gravity_work,
+                         energy_.wrapped};
   out.put("energy/sums", sums, 11, "J");
 }
 

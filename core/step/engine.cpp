@@ -42,9 +42,9 @@ void Engine::prepare(int threads) {
     for (const LawList* list : laws) {
       if (!list || k >= list->state_count) continue;
       if (!first && (list->odd[k] != 0) != (history_.odd[k] != 0))
-        throw Error(Fault::settings,
-                    "contacts: two material pairs use laws whose history column " + std::to_string(k + 1) +
-                        " differs in sign symmetry; name the laws of both pairs in the same order");
+        throw Error(Fault::settings, "contacts: two material pairs use laws whose history column " +
+                                         std::to_string(k + 1) +
+                                         " differs in sign symmetry; name the laws of both pairs in the same order");
       history_.odd[k] = list->odd[k];
       first = false;
     }
@@ -139,8 +139,8 @@ void Engine::wrap_positions() {
   if (particles.has_clumps) particles.refresh_members(0, particles.count());
 }
 
-// Two particles must not meet through two images at once, nor a particle itself; half a length is what the shortest image
-// of a difference can tell apart while particles stand up to bound and margin outside the box.
+// Two particles must not meet through two images at once, nor a particle itself; half a length is what the shortest
+// image of a difference can tell apart while particles stand up to bound and margin outside the box.
 void Engine::check_periodic_lengths() const {
   double bound = 0;
   for (const auto& b : particles.body) bound = std::max(bound, b.r);
@@ -330,12 +330,14 @@ GuardReport Engine::finish(double t, double dt) {
     const Record& b = particles.spheres()[i];
     const bool wall = ~j < parts.size() && j >= particles.sphere_count();
     report.message = "overlap of " + format("%.3g of the radius at (%.4g, %.4g, ", worst, b.x, b.y) +
-                     format("%.4g) m", b.z, 0, 0) + ", particle " + std::to_string(particles.id[particles.owner_of(i)]) +
+                     format("%.4g) m", b.z, 0, 0) + ", particle " +
+                     std::to_string(particles.id[particles.owner_of(i)]) +
                      (wall ? " with part \"" + parts[~j].name + "\""
                            : " with particle " + std::to_string(particles.id[particles.owner_of(j)])) +
-                     format("; the limit is %.3g (\"overlap_limit\"): a time step too large, too soft a material, or a "
-                            "particle squeezed between parts",
-                            options.overlap_limit, 0, 0);
+                     format(
+                         "; the limit is %.3g (\"overlap_limit\"): a time step too large, too soft a material, or a "
+                         "particle squeezed between parts",
+                         options.overlap_limit, 0, 0);
   }
   times_.integrate += now_seconds() - contacts_done;
   return report;
@@ -369,8 +371,8 @@ std::size_t Engine::memory_bytes() const {
   std::size_t bytes = pairs_.memory_bytes() + walls_.memory_bytes();
   bytes += (p.body.capacity() + p.member.capacity()) * sizeof(Record) + p.turn.capacity() * sizeof(Quat);
   bytes += (p.wrench.capacity() + sphere_wrench_.capacity() + sum_.capacity()) * sizeof(Wrench);
-  bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() + p.owner.capacity() +
-            p.sphere_id.capacity() + list_rank_.capacity()) *
+  bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() +
+            p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *
            4;
   return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + reference_.capacity() * sizeof(Vec3);
 }

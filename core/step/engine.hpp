@@ -1,9 +1,9 @@
 // engine.hpp: one time step of the world: contacts, sums in a fixed order, integration, guards.
 //
-// Every pass runs over fixed chunks of particles; each chunk's result depends on its inputs alone, so the same bits come
-// out for any number of threads. The law sees the velocity of a particle before the kick of the step, which has moved it to
-// where it is; a law that adds half of its own kick finds the mean velocity of the step, and the energy ledger closes to
-// second order in dt:
+// Every pass runs over fixed chunks of particles; each chunk's result depends on its inputs alone, so the same bits
+// come out for any number of threads. The law sees the velocity of a particle before the kick of the step, which has
+// moved it to where it is; a law that adds half of its own kick finds the mean velocity of the step, and the energy
+// ledger closes to second order in dt:
 //   euler (semi-implicit): forces at t(n) from x(n), v(n), then v(n+1) = v + a dt, x(n+1) = x + v(n+1) dt;
 //   verlet: x(n+1) from v(n+1/2), forces at t(n+1) from x(n+1) and v(n+1/2), then v(n+1) = v(n+1/2) + a dt/2.
 #pragma once
@@ -44,8 +44,8 @@ struct EngineOptions {
   Box domain;
   bool verlet = false;
   bool ledger = false;
-  double skin = 0;           // m, smallest margin of a particle; 0: 0.1 of the smallest radius
-  double overlap_limit = 0.5; // of the radius
+  double skin = 0;             // m, smallest margin of a particle; 0: 0.1 of the smallest radius
+  double overlap_limit = 0.5;  // of the radius
 };
 
 /// Energies at the instant of the last contacts, J, and what has been lost or put in since the start.
@@ -145,11 +145,11 @@ class Engine {
   WallList walls_;
   HistorySpec history_;
   Column<Wrench> sphere_wrench_;
-  Column<Wrench> sum_;                  // per particle, of this step
-  Column<double> margin_;               // per particle, m
-  Column<Vec3> reference_;              // per sphere, position when the pair list was built
-  Column<std::uint32_t> list_rank_;     // per sphere, its rank in the present list
-  std::vector<PartPlace> places_;       // parts when the wall list was built
+  Column<Wrench> sum_;               // per particle, of this step
+  Column<double> margin_;            // per particle, m
+  Column<Vec3> reference_;           // per sphere, position when the pair list was built
+  Column<std::uint32_t> list_rank_;  // per sphere, its rank in the present list
+  std::vector<PartPlace> places_;    // parts when the wall list was built
   std::vector<ChunkResult> results_;
   std::vector<std::unique_ptr<Worker>> workers_;
   std::vector<Box> part_bounds_;

@@ -18,8 +18,8 @@ namespace calx {
 struct Engine::Worker {
   explicit Worker(std::uint32_t state_columns) : scratch(state_columns) {}
   BlockScratch scratch;
-  alignas(64) std::uint32_t entry[kBlockRows];   // of the tile, relative to its first entry
-  alignas(64) std::uint32_t ordinal[kBlockRows]; // number of entries before this one that leave the chunk
+  alignas(64) std::uint32_t entry[kBlockRows];    // of the tile, relative to its first entry
+  alignas(64) std::uint32_t ordinal[kBlockRows];  // number of entries before this one that leave the chunk
   alignas(64) std::uint32_t i[kBlockStride], j[kBlockStride];
   alignas(64) std::uint32_t bucket[kBlockRows], picked[kBlockRows], picked_ordinal[kBlockRows];
   // Differences of positions, radii, masses and lever arms of a block.
@@ -29,8 +29,8 @@ struct Engine::Worker {
   alignas(64) double wjx[kBlockStride], wjy[kBlockStride], wjz[kBlockStride];
   alignas(64) double arm_i[kBlockStride], arm_j[kBlockStride];
   alignas(64) double gx[kBlockStride], gy[kBlockStride], gz[kBlockStride];
-  std::size_t tile = 0;       // first entry of the tile
-  std::size_t cross_done = 0; // entries of the chunk before the tile that leave it
+  std::size_t tile = 0;        // first entry of the tile
+  std::size_t cross_done = 0;  // entries of the chunk before the tile that leave it
   // Wall block.
   std::uint32_t wall_count = 0;
   const LawList* wall_law = nullptr;

@@ -231,12 +231,8 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, const LawList& list, std::
     } else {
       const std::uint32_t slot = pairs_.cross[w.cross_done + w.picked_ordinal[k]];
       pairs_.slot_used[slot] = 1;
-      pairs_.slot_wrench[slot] = {-fx[k],
-                                  -fy[k],
-                                  -fz[k],
-                                  -(mx[k] + aj * w.gx[k]),
-                                  -(my[k] + aj * w.gy[k]),
-                                  -(mz[k] + aj * w.gz[k])};
+      pairs_.slot_wrench[slot] = {
+          -fx[k], -fy[k], -fz[k], -(mx[k] + aj * w.gx[k]), -(my[k] + aj * w.gy[k]), -(mz[k] + aj * w.gz[k])};
     }
   }
   if (!options.ledger) return;

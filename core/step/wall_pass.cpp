@@ -62,7 +62,8 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
     }
     const LawList& list = law(particles.material[particles.owner_of(sphere)], part.material);
     for (std::size_t k = 0; k < count; ++k) {
-      if (w.wall_count > 0 && (w.wall_count == kBlockRows || w.wall_law != &list)) evaluate_walls(c, w, *w.wall_law, t, dt);
+      if (w.wall_count > 0 && (w.wall_count == kBlockRows || w.wall_law != &list))
+        evaluate_walls(c, w, *w.wall_law, t, dt);
       w.wall_law = &list;
       const std::uint32_t n = w.wall_count++;
       const Vec3 normal = rotate(part.pose.turn, found[k].normal);

@@ -37,12 +37,12 @@ struct Shape {
     double radius = 0;
   };
   std::vector<Member> members;
-  double volume = 0;      // m^3, of the union
-  Vec3 inertia;           // m^5, principal moments for unit density
-  double bound = 0;       // m, radius of the enclosing sphere about the centre of mass
+  double volume = 0;        // m^3, of the union
+  Vec3 inertia;             // m^5, principal moments for unit density
+  double bound = 0;         // m, radius of the enclosing sphere about the centre of mass
   double equal_radius = 0;  // m, of the sphere of equal volume
-  Quat frame;             // turns the principal frame into the frame the user drew the shape in
-  Vec3 centre;            // m, centre of mass in the user's frame
+  Quat frame;               // turns the principal frame into the frame the user drew the shape in
+  Vec3 centre;              // m, centre of mass in the user's frame
   bool single() const { return members.size() == 1; }
 };
 
@@ -55,16 +55,16 @@ Shape make_shape(const std::string& name, const std::vector<Shape::Member>& sphe
 struct Particles {
   // One row per particle, rank order.
   Column<Record> body;
-  Column<Quat> turn;                 // principal frame to world
-  Column<Wrench> wrench;             // sums of the last step; kept for verlet and output
+  Column<Quat> turn;                                        // principal frame to world
+  Column<Wrench> wrench;                                    // sums of the last step; kept for verlet and output
   Column<std::uint32_t> id, shape, material, first_sphere;  // first_sphere has count()+1 entries
   Column<double> scale;
   // One row per sphere. When every shape is a single sphere the spheres are the bodies and this array is empty.
   Column<Record> member;
-  Column<std::uint32_t> owner;       // rank of the sphere's particle
-  Column<std::uint32_t> sphere_id;   // kept for life
+  Column<std::uint32_t> owner;      // rank of the sphere's particle
+  Column<std::uint32_t> sphere_id;  // kept for life
   std::vector<Shape> shapes;
-  std::vector<double> density;       // kg/m^3, per material
+  std::vector<double> density;  // kg/m^3, per material
   bool has_clumps = false;
   std::uint32_t next_id = 0, next_sphere_id = 0;
 

@@ -106,8 +106,8 @@ Quat quaternion(const Eigen::Matrix3d& m) {
   return normalized(Quat{q.w(), q.x(), q.y(), q.z()});
 }
 
-/// True when every sphere can be reached from the first over touching spheres. Centres drawn at the sum of the radii touch
-/// whatever rounding made of them.
+/// True when every sphere can be reached from the first over touching spheres. Centres drawn at the sum of the radii
+/// touch whatever rounding made of them.
 bool connected(const std::vector<Shape::Member>& spheres) {
   std::vector<std::size_t> todo{0};
   std::vector<bool> seen(spheres.size(), false);

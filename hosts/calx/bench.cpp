@@ -1,7 +1,7 @@
 // bench.cpp: particle-steps per second of a settled bed and of a stream falling on one.
 //
-// The bed: 10 000 spheres of 2.5 mm poured into a 50 x 50 mm box and settled once (or read from a file), repeated side by
-// side up to the number asked for, walls of the same material at the edges. Same law and step as the peers' decks.
+// The bed: 10 000 spheres of 2.5 mm poured into a 50 x 50 mm box and settled once (or read from a file), repeated side
+// by side up to the number asked for, walls of the same material at the edges. Same law and step as the peers' decks.
 #include "bench.hpp"
 
 #include <CLI/CLI.hpp>
@@ -31,16 +31,14 @@ struct Bench {
   bool json = false;
 };
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// A case with the spheres given in a box of the footprint given; step in s.
 CaseFile box_case(const std::vector<Seed>& seeds, double lx, double ly, double step, double rolling) {
   std::ostringstream j;
   j.precision(17);
-  j << R"({"calx": 1, "title": "bench", "domain": {"min": [-0.01, -0.01, -0.01], "max": [)" << lx + 0.01 << "," << ly + 0.01
-    << R"(, 2.0]}, "time": {"step": )" << step << R"(, "end": 1000},
+  j << R"({"calx": 1, "title": "bench", "domain": {"min": [-0.01, -0.01, -0.01], "max": [)" << lx + 0.01 << ","
+    << ly + 0.01 << R"(, 2.0]}, "time": {"step": )" << step << R"(, "end": 1000},
     "materials": {"sand": {"density": 2100, "young": 1e7, "poisson": 0.25}},
     "contacts": [{"between": ["sand", "sand"], "law": "calx.hertz-mindlin",
                   "parameters": {"restitution": 0.3, "friction": 0.5)";
@@ -93,7 +91,8 @@ std::vector<Seed> settled_tile(int threads) {
 }
 
 std::vector<Seed> tiled(const std::vector<Seed>& tile, long long particles, double& lx, double& ly) {
-  const auto copies = std::max<long long>(1, std::llround(static_cast<double>(particles) / static_cast<double>(tile.size())));
+  const auto copies =
+      std::max<long long>(1, std::llround(static_cast<double>(particles) / static_cast<double>(tile.size())));
   long long ny = static_cast<long long>(std::sqrt(static_cast<double>(copies) / 2.5 + 0.5));
   ny = std::max<long long>(1, ny);
   while (copies % ny) --ny;
@@ -180,24 +179,26 @@ void run_bench(const Bench& b) {
                contacts = after.seconds_contacts - before.seconds_contacts,
                integrate = after.seconds_integrate - before.seconds_integrate;
   if (b.json) {
-    std::printf("{\"bench\": \"%s\", \"calx\": \"%s\", \"git\": \"%s\", \"particles\": %.0f, \"threads\": %d, \"steps\": %d, "
-                "\"wall_s\": %.6g, \"particle_steps_per_second\": %.6g, \"ns_per_contact\": %.6g, \"bytes_per_sphere\": %.6g, "
-                "\"entries_per_particle\": %.4g, \"pairs_per_particle\": %.4g, \"walls_per_particle\": %.4g, "
-                "\"rebuilds\": %llu, \"share_neighbour\": %.4g, \"share_contacts\": %.4g, \"share_integrate\": %.4g, "
-                "\"kinetic_J\": %.6g, \"floor_over_weight\": %.6g}\n",
-                b.name.c_str(), version(), git_revision(), n, b.threads, b.steps, wall, rate,
-                1e9 * wall / b.steps / static_cast<double>(std::max<std::size_t>(1, pairs + walls)),
-                static_cast<double>(sim.memory_bytes()) / n, static_cast<double>(after.pair_entries) / n,
-                static_cast<double>(pairs) / n, static_cast<double>(walls) / n,
-                static_cast<unsigned long long>(after.rebuilds - before.rebuilds), neighbour / wall, contacts / wall,
-                integrate / wall, kinetic, floor / weight);
+    std::printf(
+        "{\"bench\": \"%s\", \"calx\": \"%s\", \"git\": \"%s\", \"particles\": %.0f, \"threads\": %d, \"steps\": %d, "
+        "\"wall_s\": %.6g, \"particle_steps_per_second\": %.6g, \"ns_per_contact\": %.6g, \"bytes_per_sphere\": %.6g, "
+        "\"entries_per_particle\": %.4g, \"pairs_per_particle\": %.4g, \"walls_per_particle\": %.4g, "
+        "\"rebuilds\": %llu, \"share_neighbour\": %.4g, \"share_contacts\": %.4g, \"share_integrate\": %.4g, "
+        "\"kinetic_J\": %.6g, \"floor_over_weight\": %.6g}\n",
+        b.name.c_str(), version(), git_revision(), n, b.threads, b.steps, wall, rate,
+        1e9 * wall / b.steps / static_cast<double>(std::max<std::size_t>(1, pairs + walls)),
+        static_cast<double>(sim.memory_bytes()) / n, static_cast<double>(after.pair_entries) / n,
+        static_cast<double>(pairs) / n, static_cast<double>(walls) / n,
+        static_cast<unsigned long long>(after.rebuilds - before.rebuilds), neighbour / wall, contacts / wall,
+        integrate / wall, kinetic, floor / weight);
     return;
   }
   std::printf("%s, %.0f particles, %d threads: %.2f M particle-steps/s\n", b.name.c_str(), n, b.threads, rate * 1e-6);
-  std::printf("  %.1f ns per contact, %.2f pair contacts and %.2f list entries per particle, %llu list rebuilds in %d steps\n",
-              1e9 * wall / b.steps / static_cast<double>(std::max<std::size_t>(1, pairs + walls)),
-              static_cast<double>(pairs) / n, static_cast<double>(after.pair_entries) / n,
-              static_cast<unsigned long long>(after.rebuilds - before.rebuilds), b.steps);
+  std::printf(
+      "  %.1f ns per contact, %.2f pair contacts and %.2f list entries per particle, %llu list rebuilds in %d steps\n",
+      1e9 * wall / b.steps / static_cast<double>(std::max<std::size_t>(1, pairs + walls)),
+      static_cast<double>(pairs) / n, static_cast<double>(after.pair_entries) / n,
+      static_cast<unsigned long long>(after.rebuilds - before.rebuilds), b.steps);
   std::printf("  %.0f bytes per sphere; time: lists %.1f %%, contacts %.1f %%, sums and integration %.1f %%\n",
               static_cast<double>(sim.memory_bytes()) / n, 100 * neighbour / wall, 100 * contacts / wall,
               100 * integrate / wall);
@@ -211,7 +212,8 @@ void add_bench_command(CLI::App& app) {
   auto b = std::make_shared<Bench>();
   b->name = "settled";
   command->add_option("name", b->name, "settled or pour")->check(CLI::IsMember({"settled", "pour"}));
-  command->add_option("--particles", b->particles, "number of spheres, in tiles of the start state")->check(CLI::PositiveNumber);
+  command->add_option("--particles", b->particles, "number of spheres, in tiles of the start state")
+      ->check(CLI::PositiveNumber);
   command->add_option("--threads", b->threads, "threads")->check(CLI::PositiveNumber);
   command->add_option("--steps", b->steps, "timed steps")->check(CLI::PositiveNumber);
   command->add_option("--warm-up", b->warm_up, "steps before timing")->check(CLI::NonNegativeNumber);

@@ -29,7 +29,8 @@ void on_signal(int) {
 std::pair<std::string, std::string> split_override(const std::string& text) {
   const auto at = text.find('=');
   if (at == std::string::npos || text.empty() || text[0] != '/')
-    throw calx::Error(calx::Fault::usage, "--set " + text + ": expected /json/pointer=value, for instance /time/end=2.0");
+    throw calx::Error(calx::Fault::usage,
+                      "--set " + text + ": expected /json/pointer=value, for instance /time/end=2.0");
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
@@ -114,8 +115,9 @@ int guarded(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // GNU OpenMP spins for milliseconds at a barrier, which starves the very thread it waits for when the machine has other
-  // work (measured: four times slower with one busy neighbour). It reads this variable only while the program loads.
+  // GNU OpenMP spins for milliseconds at a barrier, which starves the very thread it waits for when the machine has
+  // other work (measured: four times slower with one busy neighbour). It reads this variable only while the program
+  // loads.
   if (!std::getenv("GOMP_SPINCOUNT") && !std::getenv("OMP_WAIT_POLICY")) {
     setenv("GOMP_SPINCOUNT", "10000", 1);
     execv("/proc/self/exe", argv);
@@ -123,14 +125,15 @@ int main(int argc, char** argv) {
   CLI::App app{"Calx: how powder fills a canister, by discrete elements"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("calx ") + calx::version() + " (" + calx::git_revision() + "), ABI " +
-                                        std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + " draft " +
-                                        std::to_string(CALX_ABI_DRAFT));
+                                        std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) +
+                                        " draft " + std::to_string(CALX_ABI_DRAFT));
 
   CaseFlags run_flags, check_flags;
   auto* run_command = app.add_subcommand("run", "run a case and write its report");
   run_flags.add_common(*run_command);
   run_command->add_option("-o,--out", run_flags.run.out, "folder of the results (default: CASE.out)");
-  run_command->add_option("--until", run_flags.run.until, "stop at this simulated time, s")->check(CLI::NonNegativeNumber);
+  run_command->add_option("--until", run_flags.run.until, "stop at this simulated time, s")
+      ->check(CLI::NonNegativeNumber);
   run_command->add_flag("--resume", run_flags.run.resume, "go on from the last checkpoint");
   run_command->add_flag("--overwrite", run_flags.run.overwrite, "replace an earlier run in the folder");
   run_command->add_flag("--quiet", run_flags.quiet, "no progress");
@@ -167,8 +170,9 @@ int main(int argc, char** argv) {
       [&] { std::fputs(calx::plugin_list_text(calx::plugin_search_path(plugin_path)).c_str(), stdout); });
   auto* describe_command = plugin_command->add_subcommand("describe", "parameters with units, ranges and presets");
   describe_command->add_option("id", plugin_id, "plugin id")->required();
-  describe_command->callback(
-      [&] { std::fputs(calx::plugin_describe_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
+  describe_command->callback([&] {
+    std::fputs(calx::plugin_describe_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout);
+  });
   auto* schema_command = plugin_command->add_subcommand("schema", "JSON Schema of a plugin's parameters");
   schema_command->add_option("id", plugin_id, "plugin id")->required();
   schema_command->callback(

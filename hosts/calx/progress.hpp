@@ -1,4 +1,5 @@
-// progress.hpp: one line that rewrites itself on a terminal, one line every few seconds otherwise, JSON lines on request.
+// progress.hpp: one line that rewrites itself on a terminal, one line every few seconds otherwise, JSON lines on
+// request.
 #pragma once
 #include <unistd.h>
 

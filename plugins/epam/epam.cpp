@@ -55,31 +55,33 @@ const calx_field options[] = {
     {"adhesion_exponent", "same|1|1.5|2|2.5|3|3.5|4|4.5|5", "exponent chi of the adhesive branch; same: as exponent", 0,
      9, 0, CALX_FIELD_CHOICE, 0},
     {"adhesion_cap", "consistent|literal",
-     "where half the unloading force limits adhesion: minimum on both branches, or at half the plastic overlap as LIGGGHTS",
+     "where half the unloading force limits adhesion: minimum on both branches, or at half the plastic overlap as "
+     "LIGGGHTS",
      0, 1, 0, CALX_FIELD_CHOICE, 0},
     {"adhesion_reload", "plastic|retrace",
-     "reload from the adhesive branch: a new unloading line through the present point, or back along the branch", 0, 1, 0,
-     CALX_FIELD_CHOICE, 0},
+     "reload from the adhesive branch: a new unloading line through the present point, or back along the branch", 0, 1,
+     0, CALX_FIELD_CHOICE, 0},
     {"damping", "tsuji|literal_k1",
-     "normal dashpot from the virgin tangent stiffness, or from the number k1 as LIGGGHTS; equal for exponent 1", 0, 1, 0,
-     CALX_FIELD_CHOICE, 0},
+     "normal dashpot from the virgin tangent stiffness, or from the number k1 as LIGGGHTS; equal for exponent 1", 0, 1,
+     0, CALX_FIELD_CHOICE, 0},
     {"dashpot", "compressive|clipped|always",
-     "compressive: only where the branch force pushes; clipped: nor does it turn a push into a pull; always: no switch", 0,
-     2, 0, CALX_FIELD_CHOICE, 0},
+     "compressive: only where the branch force pushes; clipped: nor does it turn a push into a pull; always: no switch",
+     0, 2, 0, CALX_FIELD_CHOICE, 0},
     {"tangential", "displacement|rescaled",
-     "what a growing contact keeps: the tangential displacement, as most codes do, or the force, which never creates energy",
+     "what a growing contact keeps: the tangential displacement, as most codes do, or the force, which never creates "
+     "energy",
      0, 1, 0, CALX_FIELD_CHOICE, 0},
     CALX_ROLLING_OPTION};
 
 enum { YOUNG, POISSON };
-const calx_field material[] = {
-    {"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
-    {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
+const calx_field material[] = {{"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
+                               {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
 
 enum { PLASTICITY, RESTITUTION, FRICTION, SURFACE_ENERGY, PULL_OFF, K_ADH, K1, TANGENTIAL_RATIO, ROLLING_FIRST };
 // Units of k1 and k_adh and the preset of tangential_ratio depend on the exponents: each instance completes its copy.
 const calx_field given[] = {
-    {"plasticity", "1", "lambda = 1 - k1/k2: 0 elastic, towards 1 rigid unloading", 0, 0.99, 0.5, CALX_FIELD_REQUIRED, 0},
+    {"plasticity", "1", "lambda = 1 - k1/k2: 0 elastic, towards 1 rigid unloading", 0, 0.99, 0.5, CALX_FIELD_REQUIRED,
+     0},
     {"restitution", "1", "restitution of the elastic contact with its dashpot; plastic loss comes on top", 0, 1, 0.5,
      CALX_FIELD_REQUIRED, 0},
     {"friction", "1", "sliding friction, tangential over normal force", 0, 10, 0.5, CALX_FIELD_REQUIRED, 0},
@@ -87,13 +89,13 @@ const calx_field given[] = {
     {"pull_off", "N", "constant pull-off force f0, whatever the history", 0, 1e6, 0, 0, 0},
     {"k_adh", "", "fixed stiffness of the adhesive branch, instead of surface_energy", 0, 1e30, 0, 0, 0},
     {"k1", "", "virgin loading stiffness; 0: from young and poisson", 0, 1e15, 0, 0, 0},
-    {"tangential_ratio", "1", "tangential stiffness over k1 (exponent 1) or over 8 G* sqrt(R* delta) (exponent 1.5)", 0, 10,
-     0.67, 0, 0},
+    {"tangential_ratio", "1", "tangential stiffness over k1 (exponent 1) or over 8 G* sqrt(R* delta) (exponent 1.5)", 0,
+     10, 0.67, 0, 0},
     CALX_ROLLING_GIVEN};
 const uint32_t given_count = sizeof given / sizeof *given;
 
 // By 2 chi, from 2 to 10.
-const char* const stiffness_unit[] = {"",        "",      "N/m",     "N/m^1.5", "N/m^2",  "N/m^2.5",
+const char* const stiffness_unit[] = {"",      "",        "N/m",   "N/m^1.5", "N/m^2", "N/m^2.5",
                                       "N/m^3", "N/m^3.5", "N/m^4", "N/m^4.5", "N/m^5"};
 
 class Epam : public calx::Instance {
@@ -163,8 +165,9 @@ class Epam : public calx::Instance {
     epam_n1_pair_f64& row = *out;
     const double lambda = value[PLASTICITY];
     if (!(lambda >= 0 && lambda <= 0.99))
-      throw calx::ConfigError("plasticity is " + std::to_string(lambda) +
-                              "; it must lie from 0 (elastic, k2 = k1) to 0.99 (k2 = 100 k1), so that k2 is not below k1");
+      throw calx::ConfigError(
+          "plasticity is " + std::to_string(lambda) +
+          "; it must lie from 0 (elastic, k2 = k1) to 0.99 (k2 = 100 k1), so that k2 is not below k1");
     if (value[SURFACE_ENERGY] > 0 && value[K_ADH] > 0)
       throw calx::ConfigError(
           "surface_energy and k_adh are both given; adhesion follows from one of them, leave the other at 0");

@@ -38,18 +38,17 @@ const char sha256[] =
 
 // What the user may set. Options belong to the instance, material values to each material, given values to each pair;
 // the case file holds options and given values in one object.
-const calx_field options[] = {
-    CALX_ROLLING_OPTION
-    {"tension", "allowed|clipped",
-     "allowed: the dashpot may pull at the end of a contact, restitution is exact; clipped: the normal force never pulls",
-     0, 1, 0, CALX_FIELD_CHOICE, 0},
-    {"tangential", "displacement|rescaled",
-     "what a growing contact keeps: the tangential displacement, as most codes do, or the force, which never creates energy",
-     0, 1, 0, CALX_FIELD_CHOICE, 0}};
+const calx_field options[] = {CALX_ROLLING_OPTION{"tension", "allowed|clipped",
+                                                  "allowed: the dashpot may pull at the end of a contact, restitution "
+                                                  "is exact; clipped: the normal force never pulls",
+                                                  0, 1, 0, CALX_FIELD_CHOICE, 0},
+                              {"tangential", "displacement|rescaled",
+                               "what a growing contact keeps: the tangential displacement, as most codes do, or the "
+                               "force, which never creates energy",
+                               0, 1, 0, CALX_FIELD_CHOICE, 0}};
 enum { YOUNG, POISSON };
-const calx_field material[] = {
-    {"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
-    {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
+const calx_field material[] = {{"young", "Pa", "Young's modulus", 1, 1e14, 1e7, CALX_FIELD_REQUIRED, 0},
+                               {"poisson", "1", "Poisson's ratio", 0, 0.5, 0.25, CALX_FIELD_REQUIRED, 0}};
 enum { RESTITUTION, FRICTION, ROLLING_FIRST };
 const calx_field given[] = {
     {"restitution", "1", "speed after over speed before a head-on impact", 0, 1, 0.5, CALX_FIELD_REQUIRED, 0},

@@ -38,11 +38,10 @@ const char sha256[] =
     ;
 
 // Options belong to the instance, given values to each pair; the case file holds both in one object.
-const calx_field options[] = {
-    CALX_ROLLING_OPTION
-    {"tension", "allowed|clipped",
-     "allowed: the dashpot may pull at the end of a contact, restitution is exact; clipped: the normal force never pulls",
-     0, 1, 0, CALX_FIELD_CHOICE, 0}};
+const calx_field options[] = {CALX_ROLLING_OPTION{"tension", "allowed|clipped",
+                                                  "allowed: the dashpot may pull at the end of a contact, restitution "
+                                                  "is exact; clipped: the normal force never pulls",
+                                                  0, 1, 0, CALX_FIELD_CHOICE, 0}};
 enum { KN, KT, TANGENTIAL_RATIO, RESTITUTION, DAMPING, DAMPING_RATE, TANGENTIAL_DAMPING, FRICTION, ROLLING_FIRST };
 const calx_field given[] = {
     {"kn", "N/m", "normal stiffness", 0, 1e15, 1e4, CALX_FIELD_REQUIRED, 0},

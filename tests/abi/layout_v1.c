@@ -1,5 +1,5 @@
-/* layout_v1.c: size and place of everything in the tables of ABI 1, on LP64. Compiling it is the test. Rows may be added
- * when a struct grows at its tail; a row that changes breaks every plugin already built. */
+/* layout_v1.c: size and place of everything in the tables of ABI 1, on LP64. Compiling it is the test. Rows may be
+ * added when a struct grows at its tail; a row that changes breaks every plugin already built. */
 #include <calx/all.h>
 #include <calx/contact_law.h>
 

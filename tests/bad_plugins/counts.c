@@ -2,7 +2,9 @@
 #define BAD_ID "test.counts"
 #include <calx/particle_force.h>
 static int users;
-#define BAD_INIT ++users; return CALX_OK
+#define BAD_INIT \
+  ++users;       \
+  return CALX_OK
 #define BAD_DEINIT --users
 #define BAD_OWN_EVAL
 static void CALX_CALL eval(const calx_instance* self, const calx_particle_block* block) {

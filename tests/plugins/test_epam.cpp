@@ -88,7 +88,8 @@ TEST_CASE("T3: fixed adhesive stiffness, n = chi = 1") {
     for (const double k : {0.0, 200.0, 1000.0, 5000.0}) {
       CAPTURE(lambda);
       CAPTURE(k);
-      const Law law(kLib, {{"exponent", "1"}}, base({{"plasticity", lambda}, {"k1", 1000}, {"k_adh", k}}), kSoft, kSoft);
+      const Law law(kLib, {{"exponent", "1"}}, base({{"plasticity", lambda}, {"k1", 1000}, {"k_adh", k}}), kSoft,
+                    kSoft);
       Record r;
       const double e = linear_impact(law, 1000, v, 20000, &r);
       const double e2 = (1 - lambda) - lambda * lambda * k / (1000 + (1 - lambda) * k);
@@ -107,14 +108,15 @@ TEST_CASE("T4: pull-off and loop energy by surface energy, all rows, both caps")
     const char* cap;
     double gamma, minimum, energy;
   };
-  const Case cases[] = {{"consistent", 0.1, 3.737e-5, 5.5914e-8},   {"consistent", 1, 3.737e-4, 5.6764e-8},
-                        {"consistent", 10, 3.737e-3, 6.5488e-8},    {"consistent", 100, 0.012571, 9.0985e-8},
-                        {"literal", 0.1, 3.737e-5, 5.5914e-8},      {"literal", 10, 3.737e-3, 6.5488e-8},
+  const Case cases[] = {{"consistent", 0.1, 3.737e-5, 5.5914e-8}, {"consistent", 1, 3.737e-4, 5.6764e-8},
+                        {"consistent", 10, 3.737e-3, 6.5488e-8},  {"consistent", 100, 0.012571, 9.0985e-8},
+                        {"literal", 0.1, 3.737e-5, 5.5914e-8},    {"literal", 10, 3.737e-3, 6.5488e-8},
                         {"literal", 100, 0.014728, 9.8045e-8}};
   for (const Case& c : cases) {
     CAPTURE(c.cap);
     CAPTURE(c.gamma);
-    const Law law(kLib, {{"adhesion_cap", c.cap}}, base({{"plasticity", 0.5}, {"surface_energy", c.gamma}}), kSoft, kSoft);
+    const Law law(kLib, {{"adhesion_cap", c.cap}}, base({{"plasticity", 0.5}, {"surface_energy", c.gamma}}), kSoft,
+                  kSoft);
     const Loop l = loop(law, 1e-5, 20000);
     CHECK_NEAR(l.peak, 0.025142, 1e-4);
     CHECK_NEAR(l.minimum, -c.minimum, 2e-4);
@@ -241,9 +243,10 @@ TEST_CASE("T7: pull-off of a virgin and of a consolidated contact, pair and wall
 
 TEST_CASE("friction limit: mu (F + k_adh delta^chi), nothing on the adhesive branch") {
   const double mu = 0.5;
-  const Law law(kLib, {{"exponent", "1"}},
-                {{"plasticity", 0.5}, {"restitution", 1}, {"friction", mu}, {"k1", 1000}, {"k_adh", 500}, {"pull_off", 1e-3}},
-                kSoft, kSoft);
+  const Law law(
+      kLib, {{"exponent", "1"}},
+      {{"plasticity", 0.5}, {"restitution", 1}, {"friction", mu}, {"k1", 1000}, {"k_adh", 500}, {"pull_off", 1e-3}},
+      kSoft, kSoft);
   auto state = law.fresh();
   Input row;
   row[CALX_IN_NZ] = 1;
@@ -276,7 +279,8 @@ TEST_CASE("LIGGGHTS edinburgh/stiffness: all 16 loops") {
     CAPTURE(row.at("case"));
     const bool hertz = number(row, "n") > 1.2, fixed = row.at("adhesion_mode") == "fixed_k_adh";
     const double k1 = number(row, "k1_N_per_m_n");
-    Values v = base({{"plasticity", 1 - 1 / number(row, "k2_over_k1")}, {"k1", k1}, {"pull_off", number(row, "f0_pull_off_N")}});
+    Values v = base(
+        {{"plasticity", 1 - 1 / number(row, "k2_over_k1")}, {"k1", k1}, {"pull_off", number(row, "f0_pull_off_N")}});
     if (fixed) v["k_adh"] = k1 * number(row, "k_adh_over_k1");
     if (row.at("adhesion_mode") == "surface_energy") v["surface_energy"] = number(row, "dgamma_J_m2");
     const std::string chi = number(row, "chi") > 1.2 ? "1.5" : "1";
@@ -330,7 +334,13 @@ TEST_CASE("wrong input is refused with its reason") {
   struct Memo {
     std::string text;
   } memo;
-  calx_host host = {sizeof(calx_host), 1, 0, &memo, "test", "1", nullptr,
+  calx_host host = {sizeof(calx_host),
+                    1,
+                    0,
+                    &memo,
+                    "test",
+                    "1",
+                    nullptr,
                     [](const calx_host* h, calx_status code, const char* text) -> calx_status {
                       static_cast<Memo*>(h->self)->text = text;
                       return code;

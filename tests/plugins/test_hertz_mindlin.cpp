@@ -215,8 +215,9 @@ TEST_CASE("stored answers of the open-source comparison: normal impact on steel 
 }
 
 TEST_CASE("LIGGGHTS and LAMMPS: floor bounce, oblique floor and oblique pair with spin") {
-  // Answers of LIGGGHTS 3.8.0 (Debian) after 2000 steps of 9.8e-7 s. It takes friction from |F_n| while the dashpot pulls,
-  // this law takes none there; Yade, which clips the pull, gives 0.2110, 175.2 and -77.40 for the last figures of each.
+  // Answers of LIGGGHTS 3.8.0 (Debian) after 2000 steps of 9.8e-7 s. It takes friction from |F_n| while the dashpot
+  // pulls, this law takes none there; Yade, which clips the pull, gives 0.2110, 175.2 and -77.40 for the last figures
+  // of each.
   const Law law(kLib, {}, {{"restitution", 0.3}, {"friction", 0.5}});
   const double r = 1.25e-3, rho = 2100;
   const auto run = [&](const Body& i, const Body& j, double g) {
@@ -229,8 +230,9 @@ TEST_CASE("LIGGGHTS and LAMMPS: floor bounce, oblique floor and oblique pair wit
   const Body slid = run(sphere(r, rho, {0, 0, 0.001251}, {0.3, 0, -0.5}), wall(), 9.81).i;
   CHECK_NEAR(slid.v.x, 0.2139, 0.02);
   CHECK_NEAR(slid.w.y, 171.2, 0.04);
-  const Body hit = run(sphere(r, rho, {0.025, 0, 0}, {0.5, 0.2, 0}),
-                       sphere(r, rho, {0.0275025, 0, 0}, {-0.5, 0, 0}, {0, 0, 50}), 0).i;
+  const Body hit =
+      run(sphere(r, rho, {0.025, 0, 0}, {0.5, 0.2, 0}), sphere(r, rho, {0.0275025, 0, 0}, {-0.5, 0, 0}, {0, 0, 50}), 0)
+          .i;
   CHECK_NEAR(hit.v.x, -0.14885, 2e-3);
   CHECK_NEAR(hit.v.y, 0.16471, 0.01);
   CHECK_NEAR(hit.w.z, -75.16, 0.03);
@@ -271,8 +273,11 @@ TEST_CASE("rolling resistance holds, rolls and spins down as the closed forms sa
   const double g = 9.81, r = 5e-3, mu_r = 0.1;
   const auto on_slope = [&](const char* model, double tan_slope, double friction, V3 spin, double time) {
     const Law law(kLib, {{"rolling", model}},
-                  {{"restitution", 0.3}, {"friction", friction}, {"rolling_friction", mu_r},
-                   {"rolling_stiffness", 500}, {"rolling_viscosity", 0.05}});
+                  {{"restitution", 0.3},
+                   {"friction", friction},
+                   {"rolling_friction", mu_r},
+                   {"rolling_stiffness", 500},
+                   {"rolling_viscosity", 0.05}});
     Duel d(law, sphere(r, 2500, {0, 0, r}, {}), wall());
     d.gravity = {0, 0, -g};
     for (int k = 0; k < 20000; ++k) d.step(1e-5);
@@ -313,5 +318,6 @@ TEST_CASE("without rolling the law has three history columns and asks for no spi
 TEST_CASE("stable step shrinks as the overlap grows") {
   const Law law(kLib, {}, {{"restitution", 0.3}, {"friction", 0.5}});
   const double e_star = 1e7 / (2 * (1 - 0.0625)), m = 1e-5, r = 1e-3, d = 1e-5;
-  CHECK_NEAR(law.table().stable_dt(law.pair().data(), m, r, d), 0.17 * std::sqrt(m / (2 * e_star * std::sqrt(r * d))), 1e-12);
+  CHECK_NEAR(law.table().stable_dt(law.pair().data(), m, r, d), 0.17 * std::sqrt(m / (2 * e_star * std::sqrt(r * d))),
+             1e-12);
 }

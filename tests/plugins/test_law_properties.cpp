@@ -32,8 +32,13 @@ std::vector<Setup> all_setups() {
       Values v = hm_roll;
       v.insert({{"plasticity", 0.5}, {"surface_energy", 1}, {"pull_off", 1e-5}});
       all.push_back({"calx-epam", {{"exponent", exponent}, {"rolling", rolling}}, v});
-      all.push_back({"calx-epam", {{"exponent", exponent}, {"rolling", rolling}, {"adhesion_exponent", "4.5"},
-                                   {"adhesion_cap", "literal"}, {"dashpot", "always"}}, v});
+      all.push_back({"calx-epam",
+                     {{"exponent", exponent},
+                      {"rolling", rolling},
+                      {"adhesion_exponent", "4.5"},
+                      {"adhesion_cap", "literal"},
+                      {"dashpot", "always"}},
+                     v});
     }
   return all;
 }
@@ -49,9 +54,21 @@ std::vector<Input> random_contacts(int count, unsigned seed) {
     V3 n{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
     n = n * (1 / norm(n));
     const double ri = uniform(5e-4, 2e-3), rj = bits() % 4 ? uniform(5e-4, 2e-3) : 0;
-    const double in[CALX_IN_COUNT] = {uniform(1e-7, 2e-5), n.x, n.y, n.z, uniform(-.1, .1), uniform(-.1, .1),
-                                      uniform(-.1, .1), uniform(-50, 50), uniform(-50, 50), uniform(-50, 50),
-                                      rj == 0 ? ri : ri * rj / (ri + rj), uniform(1e-6, 1e-5), ri, rj, 0};
+    const double in[CALX_IN_COUNT] = {uniform(1e-7, 2e-5),
+                                      n.x,
+                                      n.y,
+                                      n.z,
+                                      uniform(-.1, .1),
+                                      uniform(-.1, .1),
+                                      uniform(-.1, .1),
+                                      uniform(-50, 50),
+                                      uniform(-50, 50),
+                                      uniform(-50, 50),
+                                      rj == 0 ? ri : ri * rj / (ri + rj),
+                                      uniform(1e-6, 1e-5),
+                                      ri,
+                                      rj,
+                                      0};
     std::memcpy(row.in, in, sizeof in);
   }
   return rows;
@@ -128,7 +145,8 @@ TEST_CASE("block size and the energy outputs change no bit") {
     for (const std::size_t block : {1, 7, 64, 256}) CHECK(run<double>(law, rows, block) == whole);
     CHECK(run<float>(law, rows, 33) == run<float>(law, rows, 300));
     auto a = fresh_states(law, rows.size()), b = a;
-    const auto with = law.evaluate<double>(rows, a, kDt, 256, true), without = law.evaluate<double>(rows, b, kDt, 256, false);
+    const auto with = law.evaluate<double>(rows, a, kDt, 256, true),
+               without = law.evaluate<double>(rows, b, kDt, 256, false);
     bool same = a == b;
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (int c = 0; c < CALX_OUT_ELASTIC; ++c) same = same && with[r][c] == without[r][c];
@@ -199,8 +217,8 @@ TEST_CASE("outputs are finite at the edges, in both precisions") {
       for (const double speed : {0.0, 1e-12, 1e-3, 100.0})
         for (const double r_j : {0.0, 1e-3}) {
           const double r = 1e-3;
-          const double in[CALX_IN_COUNT] = {overlap, 0, 0, 1, speed, 0, -speed, speed, speed, 0,
-                                            r_j == 0 ? r : 0.5 * r, 1e-6, r, r_j, 0};
+          const double in[CALX_IN_COUNT] = {
+              overlap, 0, 0, 1, speed, 0, -speed, speed, speed, 0, r_j == 0 ? r : 0.5 * r, 1e-6, r, r_j, 0};
           rows.emplace_back();
           std::memcpy(rows.back().in, in, sizeof in);
         }

@@ -42,8 +42,13 @@ TEST_CASE("the dashpot returns the restitution; clipped it follows its closed fo
 }
 
 TEST_CASE("dashpots can be given outright, per mass, and for the tangent") {
-  const Law law(kLib, {}, {{"kn", 1e4}, {"restitution", 1}, {"friction", 0.5}, {"damping", 3}, {"damping_rate", 200},
-                           {"tangential_damping", 0.5}});
+  const Law law(kLib, {},
+                {{"kn", 1e4},
+                 {"restitution", 1},
+                 {"friction", 0.5},
+                 {"damping", 3},
+                 {"damping_rate", 200},
+                 {"tangential_damping", 0.5}});
   const double m = 1e-3;
   CHECK_NEAR(normal_force(law, 1e-5, -0.1, m), 1e4 * 1e-5 + (3 + 200 * m) * 0.1, 1e-12);
   CHECK(law.pair("given_t") == 1.5);
@@ -57,8 +62,13 @@ TEST_CASE("dashpots can be given outright, per mass, and for the tangent") {
 TEST_CASE("LAMMPS gran/hooke/history: same force from k_n, gamma_n, k_t, gamma_t below the Coulomb limit") {
   // F_t = -(k_t xi + m* gamma_t v_t), F_n = k_n delta - m* gamma_n v_n; gamma_t = gamma_n / 2 by default.
   const double kn = 2e5, kt = 2.0 / 7.0 * kn, gamma = 50, m = 1e-3, dt = 1e-6, vt = 1e-3;
-  const Law law(kLib, {}, {{"kn", kn}, {"kt", kt}, {"restitution", 1}, {"friction", 0.5}, {"damping_rate", gamma},
-                           {"tangential_damping", 0.5}});
+  const Law law(kLib, {},
+                {{"kn", kn},
+                 {"kt", kt},
+                 {"restitution", 1},
+                 {"friction", 0.5},
+                 {"damping_rate", gamma},
+                 {"tangential_damping", 0.5}});
   auto state = law.fresh();
   Input row;
   row[CALX_IN_OVERLAP] = 1e-4;

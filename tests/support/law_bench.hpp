@@ -14,11 +14,11 @@
 #include <vector>
 
 /// Relative closeness; doctest's Approx adds 1 to the scale, which hides any error of a small number.
-#define CHECK_NEAR(value, expected, relative)                                         \
-  do {                                                                                \
-    const double value_ = (value), expected_ = (expected);                            \
-    CHECK_MESSAGE(std::fabs(value_ - expected_) <= (relative)*std::fabs(expected_),   \
-                  #value " = " << value_ << ", expected " << expected_);              \
+#define CHECK_NEAR(value, expected, relative)                                       \
+  do {                                                                              \
+    const double value_ = (value), expected_ = (expected);                          \
+    CHECK_MESSAGE(std::fabs(value_ - expected_) <= (relative)*std::fabs(expected_), \
+                  #value " = " << value_ << ", expected " << expected_);            \
   } while (0)
 
 namespace bench {
@@ -113,7 +113,8 @@ class Law {
       std::vector<Real> state(n * table_->state_count), pair(pair_.begin(), pair_.end());
       for (std::size_t r = 0; r < n; ++r) {
         for (int k = 0; k < CALX_IN_COUNT; ++k) in[k][r] = static_cast<Real>(rows[first + r][k]);
-        for (std::size_t k = 0; k < table_->state_count; ++k) state[k * n + r] = static_cast<Real>(states[first + r][k]);
+        for (std::size_t k = 0; k < table_->state_count; ++k)
+          state[k * n + r] = static_cast<Real>(states[first + r][k]);
       }
       typename Block<Real>::type b;
       std::memset(&b, 0, sizeof b);
@@ -251,9 +252,7 @@ struct Duel {
     const V3 d = i.x - j.x;
     return d * (1 / norm(d));
   }
-  double gap_overlap() const {
-    return j.wall() ? i.r - dot(i.x - j.x, j.up) : i.r + j.r - norm(i.x - j.x);
-  }
+  double gap_overlap() const { return j.wall() ? i.r - dot(i.x - j.x, j.up) : i.r + j.r - norm(i.x - j.x); }
   double kinetic() const {
     double e = 0;
     for (const Body* b : {&i, &j})
@@ -269,9 +268,21 @@ struct Duel {
       const double li = j.wall() ? i.r - overlap : i.r - 0.5 * overlap, lj = j.wall() ? 0 : j.r - 0.5 * overlap;
       const V3 v = i.v - j.v - cross(i.w, n * li) - cross(j.w, n * lj);
       const V3 w = i.w - j.w;
-      const double in[CALX_IN_COUNT] = {overlap, n.x, n.y, n.z, v.x, v.y, v.z, w.x, w.y, w.z,
-                                        j.wall() ? i.r : i.r * j.r / (i.r + j.r), j.wall() ? i.m : i.m * j.m / (i.m + j.m),
-                                        i.r, j.r, 0};
+      const double in[CALX_IN_COUNT] = {overlap,
+                                        n.x,
+                                        n.y,
+                                        n.z,
+                                        v.x,
+                                        v.y,
+                                        v.z,
+                                        w.x,
+                                        w.y,
+                                        w.z,
+                                        j.wall() ? i.r : i.r * j.r / (i.r + j.r),
+                                        j.wall() ? i.m : i.m * j.m / (i.m + j.m),
+                                        i.r,
+                                        j.r,
+                                        0};
       Input row;
       std::memcpy(row.in, in, sizeof in);
       record.last = law.evaluate(row, state, dt);
@@ -315,7 +326,8 @@ struct Duel {
 };
 
 /// Head-on impact at relative speed v; i comes down on j. Returns speed after over speed before, or -1 if they stick.
-inline double restitution(const Law& law, Body i, Body j, double v, double dt, double longest, Record* record = nullptr) {
+inline double restitution(const Law& law, Body i, Body j, double v, double dt, double longest,
+                          Record* record = nullptr) {
   i.x = j.wall() ? V3{0, 0, i.r} : V3{0, 0, i.r + j.r};
   i.v = {0, 0, -v};
   j.x = j.v = {};

@@ -104,16 +104,16 @@ inline double parameter(const calx_descriptor& d, const calx_config& config, con
 
 }  // namespace calx
 
-#define CALX_PLUGIN(...)                                                                                       \
-  extern "C" {                                                                                                 \
-  CALX_EXPORT extern const calx_entry calx_plugin_entry;                                                       \
-  const calx_entry calx_plugin_entry = {CALX_ABI_MAGIC,                                                        \
-                                        CALX_ABI_MAJOR,                                                        \
-                                        CALX_ABI_MINOR,                                                        \
-                                        sizeof(calx_entry),                                                    \
-                                        0,                                                                     \
-                                        &calx::detail::Factory<__VA_ARGS__>::init,                             \
-                                        &calx::detail::Factory<__VA_ARGS__>::deinit,                           \
-                                        &calx::detail::Factory<__VA_ARGS__>::get_factory};                     \
+#define CALX_PLUGIN(...)                                                                   \
+  extern "C" {                                                                             \
+  CALX_EXPORT extern const calx_entry calx_plugin_entry;                                   \
+  const calx_entry calx_plugin_entry = {CALX_ABI_MAGIC,                                    \
+                                        CALX_ABI_MAJOR,                                    \
+                                        CALX_ABI_MINOR,                                    \
+                                        sizeof(calx_entry),                                \
+                                        0,                                                 \
+                                        &calx::detail::Factory<__VA_ARGS__>::init,         \
+                                        &calx::detail::Factory<__VA_ARGS__>::deinit,       \
+                                        &calx::detail::Factory<__VA_ARGS__>::get_factory}; \
   }
 #endif
