@@ -42,7 +42,8 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
   const auto n = static_cast<std::uint32_t>(settings.materials.size());
   CaseLaws out;
   out.matrix.assign(static_cast<std::size_t>(n) * n, nullptr);
-  std::vector<std::string> known{"density"};
+  // Moduli also give the Rayleigh limit of the time step, whatever the law reads.
+  std::vector<std::string> known{"density", "young", "poisson"};
   for (const auto& contact : settings.contacts) {
     const std::uint32_t a = material_index(settings, contact.between[0]),
                         b = material_index(settings, contact.between[1]);

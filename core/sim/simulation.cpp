@@ -64,6 +64,7 @@ void build_parts(World& w) {
         Surface::build(table, wall.instance->get(), wall.instance->host(), w.c.file + " " + part.pointer));
     wall.motion = part.motion.empty() ? -1 : w.motions.find(part.motion);
     EnginePart e;
+    e.name = part.name;
     e.surface = wall.surface.get();
     e.material = index_of(w.c.materials, part.material);
     e.present = part.present;
@@ -89,18 +90,18 @@ double fall_speed(const World& w) {
       }
     };
     double ignore = -1e300;
-    for (const auto& s : w.c.sources)
-      if (s.positions.empty() && s.file.empty()) grow(s.region.bounds(), top, ignore);
-    for (const auto& s : w.c.sources)
-      for (const auto& x : s.positions) top = std::min(top, dot(down, x));
+    for (const auto& s : w.sources) {
+      if (s.given().empty()) grow(s.bounds(), top, ignore);
+      for (const auto& seed : s.given()) top = std::min(top, dot(down, seed.x));
+    }
     ignore = 1e300;
     for (const auto& wall : w.walls) grow(wall.surface->bounds(), ignore, bottom);
     if (bottom > top) speed = std::sqrt(2 * g * (bottom - top));
   }
   double thrown = 0;
-  for (const auto& s : w.c.sources) {
-    thrown = std::max(thrown, norm(s.velocity));
-    for (const auto& v : s.velocities) thrown = std::max(thrown, norm(v));
+  for (const auto& s : w.sources) {
+    if (s.given().empty()) thrown = std::max(thrown, norm(s.settings().velocity));
+    for (const auto& seed : s.given()) thrown = std::max(thrown, norm(seed.v));
   }
   return std::sqrt(speed * speed + thrown * thrown);
 }
@@ -110,6 +111,7 @@ StepInputs step_inputs(const World& w) {
   in.settings = &w.c;
   in.laws = &w.laws;
   in.shapes = &w.engine.particles.shapes;
+  in.sources = &w.sources;
   for (std::size_t k = 0; k < w.walls.size(); ++k) {
     if (w.walls[k].motion < 0) continue;
     const Vec3 pivot = w.motions.pose(w.walls[k].motion, 0).centre;

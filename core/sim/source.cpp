@@ -18,8 +18,6 @@ namespace {
 constexpr double kRainInterval = 2e-3;
 /// Tries to find a free place for one particle of a rate source before it waits for the next delivery.
 constexpr int kTries = 60;
-/// Share of the radius by which given particles may overlap at the start: a settled bed does.
-constexpr double kAcceptedOverlap = 0.05;
 
 }  // namespace
 
@@ -33,6 +31,7 @@ Source::Source(const SourceSettings& settings, const std::string& file, const Sh
       density_(density),
       random_(seed, 1000 + stream) {
   if (settings.when.empty()) start_ = 0;
+  read_given();
 }
 
 double Source::mass_of(double scale) const { return density_ * shape_->volume * scale * scale * scale; }
@@ -41,7 +40,24 @@ double Source::largest_bound() const {
   const SizeSettings& z = settings_.size;
   double scale = z.kind == SizeSettings::Kind::fixed ? z.scale : z.highest;
   for (const double s : z.scales) scale = std::max(scale, s);
+  if (is_given()) scale = 0;
+  for (const Seed& s : given_) scale = std::max(scale, s.scale);
   return scale * shape_->bound;
+}
+
+double Source::smallest_scale() const {
+  const SizeSettings& z = settings_.size;
+  double scale = z.kind == SizeSettings::Kind::fixed ? z.scale : z.lowest;
+  if (is_given()) scale = 1e300;
+  for (const Seed& s : given_) scale = std::min(scale, s.scale);
+  return scale;
+}
+
+Box Source::bounds() const {
+  if (!is_given()) return settings_.region.bounds();
+  Box box;
+  for (const Seed& s : given_) box.add(s.x);
+  return box;
 }
 
 double Source::draw_scale() {
@@ -100,7 +116,11 @@ bool Source::wants_more(double next_mass) const {
 }
 
 double Source::requested_mass() const {
-  if (!settings_.file.empty() || !settings_.positions.empty()) return delivered_;
+  if (is_given()) {
+    double mass = 0;
+    for (const Seed& s : given_) mass += mass_of(s.scale);
+    return mass;
+  }
   return settings_.mass > 0 ? settings_.mass : static_cast<double>(settings_.count) * mass_of(settings_.size.scale);
 }
 
@@ -108,9 +128,9 @@ bool Source::due(double t) const { return started() && !exhausted_ && t >= start
 
 std::vector<Seed> Source::make(double t, const Obstacles& obstacles) {
   std::vector<Seed> out;
-  if (!settings_.file.empty() || !settings_.positions.empty()) {
-    out = given();
-    for (std::size_t k = 0; k < out.size(); ++k) check_free(out[k], k, obstacles);
+  if (is_given()) {
+    check_given(obstacles);
+    out = given_;
     for (const auto& seed : out) delivered_ += mass_of(seed.scale);
     delivered_count_ += out.size();
     exhausted_ = true;
@@ -124,68 +144,66 @@ std::vector<Seed> Source::make(double t, const Obstacles& obstacles) {
   return out;
 }
 
-void Source::check_free(const Seed& seed, std::size_t number, const Obstacles& obstacles) const {
-  const Quat q = normalized(seed.turn) * shape_->frame;
-  for (const auto& m : shape_->members) {
-    const Vec3 x = seed.x + rotate(q, seed.scale * m.at);
-    if (!obstacles.free(x, (1 - kAcceptedOverlap) * seed.scale * m.radius))
-      throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particle number " + std::to_string(number) +
-                                       " at (" + brief_quantity(seed.x.x, "1") + ", " + brief_quantity(seed.x.y, "1") +
-                                       ", " + brief_quantity(seed.x.z, "1") +
-                                       ") m overlaps a part, or a particle of another source, by more than 5 % of its "
-                                       "radius at the start; move it away");
+void Source::read_given() {
+  if (!settings_.file.empty()) given_ = read_seeds(settings_.file);
+  for (std::size_t k = 0; k < settings_.positions.size(); ++k) {
+    Seed s;
+    s.x = settings_.positions[k];
+    s.turn = k < settings_.orientations.size() ? settings_.orientations[k] : Quat{};
+    s.v = k < settings_.velocities.size() ? settings_.velocities[k] : settings_.velocity;
+    s.w = k < settings_.spins.size() ? settings_.spins[k] : Vec3{};
+    s.scale = settings_.size.scale;
+    given_.push_back(s);
   }
 }
 
-std::vector<Seed> Source::given() const {
-  std::vector<Seed> seeds;
-  if (!settings_.file.empty()) {
-    seeds = read_seeds(settings_.file);
-  } else {
-    for (std::size_t k = 0; k < settings_.positions.size(); ++k) {
-      Seed s;
-      s.x = settings_.positions[k];
-      s.turn = k < settings_.orientations.size() ? settings_.orientations[k] : Quat{};
-      s.v = k < settings_.velocities.size() ? settings_.velocities[k] : settings_.velocity;
-      s.w = k < settings_.spins.size() ? settings_.spins[k] : Vec3{};
-      s.scale = settings_.size.scale;
-      seeds.push_back(s);
-    }
-  }
-  // Given particles must not start inside each other; a settled bed may overlap a little.
+// Given particles must not start inside each other, other particles or parts; a settled bed may overlap a little.
+void Source::check_given(const Obstacles& obstacles) const {
+  constexpr double kAccepted = 0.05;
+  struct Ball {
+    Vec3 x;
+    double r;
+  };
   std::map<std::array<std::int64_t, 3>, std::vector<std::size_t>> cells;
   const double cell = 2 * largest_bound();
-  std::vector<std::vector<std::pair<Vec3, double>>> spheres(seeds.size());
   auto key = [&](const Vec3& x, int a, int b, int c) {
     return std::array<std::int64_t, 3>{static_cast<std::int64_t>(std::floor(x.x / cell)) + a,
                                        static_cast<std::int64_t>(std::floor(x.y / cell)) + b,
                                        static_cast<std::int64_t>(std::floor(x.z / cell)) + c};
   };
-  for (std::size_t k = 0; k < seeds.size(); ++k) {
-    const Quat q = normalized(seeds[k].turn) * shape_->frame;
-    for (const auto& m : shape_->members)
-      spheres[k].emplace_back(seeds[k].x + rotate(q, seeds[k].scale * m.at), seeds[k].scale * m.radius);
-    for (int a = -1; a <= 1; ++a)
-      for (int b = -1; b <= 1; ++b)
-        for (int c = -1; c <= 1; ++c) {
-          const auto found = cells.find(key(seeds[k].x, a, b, c));
-          if (found == cells.end()) continue;
-          for (const std::size_t other : found->second)
-            for (const auto& s : spheres[k])
-              for (const auto& o : spheres[other]) {
-                const double overlap = s.second + o.second - norm(s.first - o.first);
-                if (overlap > kAcceptedOverlap * std::min(s.second, o.second))
-                  throw Error(Fault::settings,
-                              file_ + " " + settings_.pointer + ": particles number " + std::to_string(other) +
-                                  " and " + std::to_string(k) + " overlap by " + brief_quantity(overlap, "m") +
-                                  " at the start, " +
-                                  format_number(std::round(100 * overlap / std::min(s.second, o.second))) +
-                                  " % of the radius; at most 5 % is accepted, move them apart");
-              }
-        }
-    cells[key(seeds[k].x, 0, 0, 0)].push_back(k);
+  std::vector<std::vector<Ball>> spheres(given_.size());
+  for (std::size_t k = 0; k < given_.size(); ++k) {
+    const Seed& seed = given_[k];
+    const Quat q = normalized(seed.turn) * shape_->frame;
+    for (const auto& m : shape_->members) {
+      spheres[k].push_back({seed.x + rotate(q, seed.scale * m.at), seed.scale * m.radius});
+      if (!obstacles.free(spheres[k].back().x, (1 - kAccepted) * spheres[k].back().r))
+        throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particle number " + std::to_string(k) +
+                                         " at (" + format_number(seed.x.x) + ", " + format_number(seed.x.y) + ", " +
+                                         format_number(seed.x.z) +
+                                         ") m overlaps a particle of another source or a part by more than 5 % of its "
+                                         "radius; move it away");
+    }
+    for (const Vec3& x : obstacles.images(seed.x, cell))
+      for (int a = -1; a <= 1; ++a)
+        for (int b = -1; b <= 1; ++b)
+          for (int c = -1; c <= 1; ++c) {
+            const auto found = cells.find(key(x, a, b, c));
+            if (found == cells.end()) continue;
+            for (const std::size_t other : found->second)
+              for (const Ball& s : spheres[k])
+                for (const Ball& o : spheres[other]) {
+                  const double overlap = s.r + o.r - norm(obstacles.nearest(s.x - o.x)), least = std::min(s.r, o.r);
+                  if (overlap > kAccepted * least)
+                    throw Error(Fault::settings, file_ + " " + settings_.pointer + ": particles number " +
+                                                     std::to_string(other) + " and " + std::to_string(k) +
+                                                     " overlap by " + brief_quantity(overlap, "m") + " at the start, " +
+                                                     format_number(std::round(100 * overlap / least)) +
+                                                     " % of the radius; at most 5 % is accepted, move them apart");
+                }
+          }
+    cells[key(seed.x, 0, 0, 0)].push_back(k);
   }
-  return seeds;
 }
 
 std::vector<Seed> Source::fill(const Obstacles& obstacles) {
@@ -202,12 +220,22 @@ std::vector<Seed> Source::fill(const Obstacles& obstacles) {
   // Sites of a cubic lattice, as wide as the number of particles allows, narrowed until all find a place.
   double pitch = std::max(
       tight, 1.3 * std::cbrt(settings_.region.volume() / static_cast<double>(std::max<std::size_t>(scales.size(), 1))));
+  // Where the region meets itself across a periodic face, its last sites keep half a pitch from it as the first do.
+  const Vec3 side = box.hi - box.lo;
+  bool meets[3];
+  for (int k = 0; k < 3; ++k) {
+    Vec3 d;
+    d[k] = side[k];
+    meets[k] = norm(obstacles.nearest(d)) < tight;
+  }
   std::vector<Vec3> sites;
   for (;;) {
     sites.clear();
-    for (double z = box.lo.z + 0.5 * pitch; z <= box.hi.z - 0.5 * tight * 0.999; z += pitch)
-      for (double y = box.lo.y + 0.5 * pitch; y <= box.hi.y - 0.5 * tight * 0.999; y += pitch)
-        for (double x = box.lo.x + 0.5 * pitch; x <= box.hi.x - 0.5 * tight * 0.999; x += pitch) {
+    Vec3 last;
+    for (int k = 0; k < 3; ++k) last[k] = box.hi[k] - 0.5 * (meets[k] ? pitch : tight) * 0.999;
+    for (double z = box.lo.z + 0.5 * pitch; z <= last.z; z += pitch)
+      for (double y = box.lo.y + 0.5 * pitch; y <= last.y; y += pitch)
+        for (double x = box.lo.x + 0.5 * pitch; x <= last.x; x += pitch) {
           const Vec3 p{x, y, z};
           if (settings_.region.contains(p) && obstacles.free(p, 0.5 * pitch < 1.5 * bound ? 0.5 * pitch : 1.5 * bound))
             sites.push_back(p);
@@ -231,6 +259,7 @@ std::vector<Seed> Source::fill(const Obstacles& obstacles) {
     const Vec3 site = sites[k * sites.size() / scales.size()];
     s.x = site + Vec3{random_.uniform(-1, 1) * play * 0.57, random_.uniform(-1, 1) * play * 0.57,
                       random_.uniform(-1, 1) * play * 0.57};
+    if (!settings_.region.contains(s.x)) s.x = site;
     s.turn = draw_turn();
     s.v = settings_.velocity;
     s.scale = scales[k];
@@ -258,7 +287,7 @@ std::vector<Seed> Source::rain(double t, const Obstacles& obstacles) {
       const Vec3 p = draw_point();
       if (!obstacles.free(p, radius)) continue;
       bool clear = true;
-      for (const auto& s : out) clear &= norm(s.x - p) > radius + s.scale * shape_->bound;
+      for (const auto& s : out) clear &= norm(obstacles.nearest(s.x - p)) > radius + s.scale * shape_->bound;
       if (!clear) continue;
       Seed s;
       s.x = p;
@@ -323,7 +352,8 @@ std::vector<Seed> read_seeds(const std::string& path) {
       } catch (const std::exception&) {
         used = 0;
       }
-      if (used == 0 || k >= header.size() || !std::isfinite(v))
+      while (used > 0 && used < cell.size() && cell[used] == ' ') ++used;
+      if (used == 0 || used < cell.size() || k >= header.size() || !std::isfinite(v))
         throw Error(Fault::files, path + ":" + std::to_string(number) + ": \"" + cell +
                                       "\" is not a finite number of a known column");
       const std::string& h = header[k];
@@ -353,7 +383,7 @@ std::vector<Seed> read_seeds(const std::string& path) {
         s.turn.y = v;
       else if (h == "qz_1")
         s.turn.z = v;
-      else if (h == "scale_1")
+      else if (h == "scale")
         s.scale = v;
       else
         throw Error(Fault::files, path + ":1: column \"" + h + "\" is not known");
@@ -361,6 +391,9 @@ std::vector<Seed> read_seeds(const std::string& path) {
     if (k != header.size())
       throw Error(Fault::files, path + ":" + std::to_string(number) + ": " + std::to_string(k) + " values under " +
                                     std::to_string(header.size()) + " columns");
+    if (!(s.scale > 0))
+      throw Error(Fault::files,
+                  path + ":" + std::to_string(number) + ": a scale of " + format_number(s.scale) + "; must be above 0");
     out.push_back(s);
   }
   return out;

@@ -25,6 +25,10 @@ class Obstacles {
   virtual ~Obstacles() = default;
   /// True when a sphere of that centre and radius touches no particle and no part.
   virtual bool free(const Vec3& x, double radius) const = 0;
+  /// Shortest image of a difference of positions in a periodic domain.
+  virtual Vec3 nearest(const Vec3& d) const { return d; }
+  /// x and its periodic images within reach of the domain, m.
+  virtual std::vector<Vec3> images(const Vec3& x, double) const { return {x}; }
 };
 
 class Source {
@@ -45,8 +49,13 @@ class Source {
   bool due(double t) const;
   /// Largest sphere about a particle of this source, m.
   double largest_bound() const;
+  double smallest_scale() const;
+  /// Particles given outright, by the case or its file; none for a source with a region.
+  const std::vector<Seed>& given() const { return given_; }
+  /// Where centres of new particles may be.
+  Box bounds() const;
   /// Particles to insert now. Throws Error(Fault::settings) when the region cannot hold the mass, or given particles
-  /// overlap by more than a twentieth of their radius.
+  /// overlap each other, particles of other sources or a part by more than a twentieth of their radius.
   std::vector<Seed> make(double t, const Obstacles& obstacles);
 
   double requested_mass() const;  // kg
@@ -60,10 +69,11 @@ class Source {
   double draw_scale();
   Quat draw_turn();
   Vec3 draw_point();
-  void check_free(const Seed& seed, std::size_t number, const Obstacles& obstacles) const;
   double mass_of(double scale) const;
   bool wants_more(double next_mass) const;
-  std::vector<Seed> given() const;
+  bool is_given() const { return !settings_.file.empty() || !settings_.positions.empty(); }
+  void read_given();
+  void check_given(const Obstacles& obstacles) const;
   std::vector<Seed> fill(const Obstacles& obstacles);
   std::vector<Seed> rain(double t, const Obstacles& obstacles);
 
@@ -73,12 +83,13 @@ class Source {
   std::uint32_t shape_index_, material_;
   double density_;
   Random random_;
+  std::vector<Seed> given_;
   double start_ = -1, next_ = 0, delivered_ = 0, pending_scale_ = 0;
   std::uint64_t delivered_count_ = 0;
   bool exhausted_ = false;
 };
 
-/// Rows of a CSV with header x_m,y_m,z_m and optionally vx_m_s.. , wx_rad_s.., qw_1.., scale_1. Throws
+/// Rows of a CSV with header x_m,y_m,z_m and optionally vx_m_s.. , wx_rad_s.., qw_1.., scale. Throws
 /// Error(Fault::files) with the line number.
 std::vector<Seed> read_seeds(const std::string& path);
 

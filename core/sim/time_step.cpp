@@ -42,19 +42,16 @@ struct Smallest {
 
 Smallest smallest_of(const StepInputs& in, const std::string& material, double density) {
   Smallest out;
-  for (const auto& source : in.settings->sources) {
-    if (source.material != material) continue;
-    double scale = source.size.kind == SizeSettings::Kind::fixed ? source.size.scale : source.size.lowest;
-    for (const double s : source.size.scales) scale = std::min(scale, s);
-    for (const auto& shape : *in.shapes) {
-      if (shape.name != source.shape) continue;
-      for (const auto& m : shape.members)
-        if (scale * m.radius < out.radius) {
-          out.radius = scale * m.radius;
-          out.source = source.name;
-        }
-      out.mass = std::min(out.mass, density * shape.volume * scale * scale * scale);
-    }
+  for (const auto& source : *in.sources) {
+    if (source.settings().material != material) continue;
+    const double scale = source.smallest_scale();
+    const Shape& shape = (*in.shapes)[source.shape_index()];
+    for (const auto& m : shape.members)
+      if (scale * m.radius < out.radius) {
+        out.radius = scale * m.radius;
+        out.source = source.settings().name;
+      }
+    out.mass = std::min(out.mass, density * shape.volume * scale * scale * scale);
   }
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include "sim/laws.hpp"
 #include "sim/simulation.hpp"
+#include "sim/source.hpp"
 #include "store/particles.hpp"
 
 namespace calx {
@@ -12,6 +13,7 @@ struct StepInputs {
   const CaseSettings* settings = nullptr;
   const CaseLaws* laws = nullptr;
   const std::vector<Shape>* shapes = nullptr;
+  const std::vector<Source>* sources = nullptr;
   double particle_speed = 0;  // m/s, the largest expected
   double wall_speed = 0;      // m/s, the largest of any part
   std::string fastest_part;

@@ -21,24 +21,24 @@ class WorldObstacles final : public Obstacles {
     const Record* s = p.spheres();
     double largest = source.largest_bound();
     for (std::size_t k = 0; k < p.sphere_count(); ++k) largest = std::max(largest, s[k].r);
-    cell_ = 2 * largest;
-    Box area = source.settings().region.bounds();
-    for (std::uint32_t k = 0; k < p.sphere_count(); ++k) {
-      const Vec3 x = position(s[k]);
-      bool near = true;
-      for (int d = 0; d < 3; ++d) near &= x[d] > area.lo[d] - 2 * cell_ && x[d] < area.hi[d] + 2 * cell_;
-      if (near) cells_[key(x, 0, 0, 0)].push_back(k);
-    }
+    // A fill asks for one and a half times its largest bound.
+    cell_ = 2.5 * largest;
+    const Box area = source.bounds();
+    for (std::uint32_t k = 0; k < p.sphere_count(); ++k)
+      for (const Vec3& x : images(position(s[k]), 2 * cell_)) {
+        bool near = true;
+        for (int d = 0; d < 3; ++d) near &= x[d] > area.lo[d] - 2 * cell_ && x[d] < area.hi[d] + 2 * cell_;
+        if (near) cells_[key(x, 0, 0, 0)].push_back({x, s[k].r});
+      }
   }
   bool free(const Vec3& x, double radius) const override {
-    const Record* s = world_.engine.particles.spheres();
     for (int a = -1; a <= 1; ++a)
       for (int b = -1; b <= 1; ++b)
         for (int c = -1; c <= 1; ++c) {
           const auto found = cells_.find(key(x, a, b, c));
           if (found == cells_.end()) continue;
-          for (const auto k : found->second)
-            if (norm2(position(s[k]) - x) < (s[k].r + radius) * (s[k].r + radius)) return false;
+          for (const Ball& s : found->second)
+            if (norm2(s.x - x) < (s.r + radius) * (s.r + radius)) return false;
         }
     for (const auto& part : world_.engine.parts) {
       if (!part.present) continue;
@@ -51,8 +51,28 @@ class WorldObstacles final : public Obstacles {
     }
     return true;
   }
+  Vec3 nearest(const Vec3& d) const override { return world_.engine.options.wrap.nearest(d); }
+  std::vector<Vec3> images(const Vec3& x, double reach) const override {
+    const Wrap& wrap = world_.engine.options.wrap;
+    std::vector<Vec3> out{x};
+    for (int d = 0; d < 3; ++d) {
+      if (!wrap.periodic[static_cast<std::size_t>(d)]) continue;
+      const std::size_t n = out.size();
+      for (std::size_t k = 0; k < n; ++k)
+        for (const double shift : {-wrap.length[d], wrap.length[d]}) {
+          Vec3 image = out[k];
+          image[d] += shift;
+          if (image[d] > wrap.lo[d] - reach && image[d] < wrap.lo[d] + wrap.length[d] + reach) out.push_back(image);
+        }
+    }
+    return out;
+  }
 
  private:
+  struct Ball {
+    Vec3 x;
+    double r;
+  };
   std::array<std::int64_t, 3> key(const Vec3& x, int a, int b, int c) const {
     return {static_cast<std::int64_t>(std::floor(x.x / cell_)) + a,
             static_cast<std::int64_t>(std::floor(x.y / cell_)) + b,
@@ -60,7 +80,7 @@ class WorldObstacles final : public Obstacles {
   }
   const World& world_;
   double cell_;
-  std::map<std::array<std::int64_t, 3>, std::vector<std::uint32_t>> cells_;
+  std::map<std::array<std::int64_t, 3>, std::vector<Ball>> cells_;  // images included
   mutable std::vector<std::uint32_t> elements_;
 };
 
@@ -212,7 +232,8 @@ void World::start_stage(std::size_t number, double t) {
   for (const auto& part : s.remove) set_present(part, false, t);
   for (const auto& part : s.add) set_present(part, true, t);
   for (const auto& motion : s.start) motions.start(motions.find(motion), t);
-  events.fire("stage " + s.name, t);
+  // An end written inline is the event "stage <name>" (config), so the beginning has a name of its own.
+  events.fire("stage " + s.name + " begins", t);
 }
 
 void World::handle_events(double t) {

@@ -76,8 +76,9 @@ void Engine::save(StateWriter& out) const {
                          energy_.plastic,
                          energy_.wall_work,
                          energy_.force_work,
-                         energy_.gravity_work};
-  out.put("energy/sums", sums, 10, "J");
+                         energy_.gravity_work,
+                         energy_.wrapped};
+  out.put("energy/sums", sums, 11, "J");
 }
 
 void Engine::load(const StateReader& in) {
@@ -96,7 +97,7 @@ void Engine::load(const StateReader& in) {
   largest_margin_ = lengths[1];
   cell_ = lengths[2];
   largest_overlap_ = lengths[3];
-  energy_ = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8], sums[9]};
+  energy_ = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8], sums[9], sums[10]};
   uniform_ = one_material();
   // Lists of what this engine may have run before must not lend their history.
   pairs_ = {};

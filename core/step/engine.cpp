@@ -125,17 +125,36 @@ bool Engine::parts_left_margin() const {
   return false;
 }
 
+void Engine::wrap_positions() {
+  for (auto& b : particles.body)
+    for (int k = 0; k < 3; ++k) {
+      if (!options.wrap.periodic[static_cast<std::size_t>(k)]) continue;
+      const double length = options.wrap.length[k];
+      double& x = k == 0 ? b.x : k == 1 ? b.y : b.z;
+      const double shift = x < options.wrap.lo[k] ? length : x >= options.wrap.lo[k] + length ? -length : 0;
+      if (shift == 0) continue;
+      x += shift;
+      energy_.wrapped += b.m * options.gravity[k] * shift;
+    }
+  if (particles.has_clumps) particles.refresh_members(0, particles.count());
+}
+
+// Two particles must not meet through two images at once, nor a particle itself; half a length is what the shortest
+// image of a difference can tell apart while particles stand up to bound and margin outside the box.
+void Engine::check_periodic_lengths() const {
+  double bound = 0;
+  for (const auto& b : particles.body) bound = std::max(bound, b.r);
+  const double least = 4 * (bound + largest_margin_);
+  for (int k = 0; k < 3; ++k)
+    if (options.wrap.periodic[static_cast<std::size_t>(k)] && options.wrap.length[k] < least)
+      throw Error(Fault::settings, std::string("/domain: periodic along ") + "xyz"[k] +
+                                       format(" over %.4g m; particles up to %.4g m across need at least %.4g m",
+                                              options.wrap.length[k], 2 * bound, least));
+}
+
 void Engine::rebuild(double dt, bool reorder) {
   const std::size_t spheres = particles.sphere_count();
-  if (options.wrap.any())
-    for (auto& b : particles.body)
-      for (int k = 0; k < 3; ++k) {
-        if (!options.wrap.periodic[static_cast<std::size_t>(k)]) continue;
-        double& x = k == 0 ? b.x : k == 1 ? b.y : b.z;
-        if (x < options.wrap.lo[k]) x += options.wrap.length[k];
-        if (x >= options.wrap.lo[k] + options.wrap.length[k]) x -= options.wrap.length[k];
-      }
-  if (particles.has_clumps && options.wrap.any()) particles.refresh_members(0, particles.count());
+  if (options.wrap.any()) wrap_positions();
 
   if (count_changed_) {
     double smallest = 1e300, largest = 0;
@@ -147,6 +166,7 @@ void Engine::rebuild(double dt, bool reorder) {
     smallest_margin_ = options.skin > 0 ? options.skin : 0.1 * smallest;
     largest_margin_ = std::max(smallest, smallest_margin_);
     cell_ = 2 * (largest + smallest_margin_);
+    check_periodic_lengths();
     uniform_ = one_material();
   }
   if (reorder && particles.count() > 0) {
@@ -299,6 +319,7 @@ GuardReport Engine::finish(double t, double dt) {
                        "; the time step is too large or a law returned a non-finite force";
     }
   }
+  energy_.gravity += energy_.wrapped;
   for (std::size_t k = 0; k < load.size(); ++k) {
     parts[k].force = {load[k].fx, load[k].fy, load[k].fz};
     parts[k].torque = {load[k].tx, load[k].ty, load[k].tz};
@@ -311,7 +332,7 @@ GuardReport Engine::finish(double t, double dt) {
     report.message = "overlap of " + format("%.3g of the radius at (%.4g, %.4g, ", worst, b.x, b.y) +
                      format("%.4g) m", b.z, 0, 0) + ", particle " +
                      std::to_string(particles.id[particles.owner_of(i)]) +
-                     (wall ? " with part number " + std::to_string(~j)
+                     (wall ? " with part \"" + parts[~j].name + "\""
                            : " with particle " + std::to_string(particles.id[particles.owner_of(j)])) +
                      format(
                          "; the limit is %.3g (\"overlap_limit\"): a time step too large, too soft a material, or a "

@@ -24,6 +24,7 @@ namespace calx {
 
 /// A wall part in the world.
 struct EnginePart {
+  std::string name;
   const Surface* surface = nullptr;
   std::uint32_t material = 0;
   bool present = true;
@@ -51,6 +52,9 @@ struct EngineOptions {
 struct EngineEnergy {
   double kinetic_translation = 0, kinetic_rotation = 0, gravity = 0, elastic = 0;
   double friction = 0, damping = 0, plastic = 0, wall_work = 0, force_work = 0, gravity_work = 0;
+  /// Part of gravity: what particles lost when they were put back across a periodic face, so that gravity along a
+  /// periodic direction does its work for ever.
+  double wrapped = 0;
 };
 
 struct EngineTimes {
@@ -117,6 +121,8 @@ class Engine {
   struct ChunkResult;
   void rebuild_if_stale(double dt);
   void rebuild(double dt, bool reorder);
+  void wrap_positions();
+  void check_periodic_lengths() const;
   void place_parts(double dt, std::vector<PartPlace>& places);
   bool parts_left_margin() const;
   void pair_pass(std::size_t chunk, Worker& worker, double t, double dt);
