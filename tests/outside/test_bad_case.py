@@ -67,7 +67,7 @@ class BadCase(CalxTest):
     def test_overlap_with_a_wall(self):
         case = cup()
         case["sources"][0] = {"name": "one", "shape": "ball", "material": "glass", "positions": [[0, 0, 0.0005]]}
-        self.refuses(CASE, case, r"/sources/0: particle number 0 at \(0, 0, 0\.0005\) m overlaps a part", "move it away")
+        self.refuses(CASE, case, r"/sources/0: particle number 0 at \(0, 0, 5e-04\) m overlaps a particle of another source or a part", "move it away")
 
     def test_region_too_small(self):
         self.refuses(CASE, cup({"/sources/0/count": None, "/sources/0/mass": 2}),

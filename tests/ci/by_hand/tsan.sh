@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Thread sanitizer on the step and the plugin registry. clang's OpenMP runtime tells the sanitizer about its barriers
 # (libarcher, part of libomp-dev); gcc's does not, so every parallel loop would be reported.
-source "$(dirname "$0")/common.sh"
+source "$(dirname "$0")/../common.sh"
 export TSAN_OPTIONS="ignore_noninstrumented_modules=1 halt_on_error=1"
 
 mkdir -p build/tsan
