@@ -44,6 +44,15 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
   out.matrix.assign(static_cast<std::size_t>(n) * n, nullptr);
   // Moduli also give the Rayleigh limit of the time step, whatever the law reads.
   std::vector<std::string> known{"density", "young", "poisson"};
+  std::vector<ContactLawEntry> entries;
+  for (const auto& contact : settings.contacts)
+    for (const auto& entry : contact.laws) {
+      entries.push_back(create_contact_law(registry, entry, settings.file));
+      for (const auto& key : table_keys(entries.back().law.material())) known.push_back(key);
+    }
+  // Before any law misses a property: a misspelt key is the likelier mistake.
+  for (const auto& m : settings.materials) check_keys(m.properties, known, settings.file);
+  auto next = entries.begin();
   for (const auto& contact : settings.contacts) {
     const std::uint32_t a = material_index(settings, contact.between[0]),
                         b = material_index(settings, contact.between[1]);
@@ -51,7 +60,7 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
     list_ab->label = contact.between[0] + "-" + contact.between[1];
     list_ba->label = contact.between[1] + "-" + contact.between[0];
     for (const auto& entry : contact.laws) {
-      const ContactLawEntry made = create_contact_law(registry, entry, settings.file);
+      const ContactLawEntry& made = *next++;
       const ContactLaw& law = made.law;
       const std::string owner = law.id() + " " + law.version();
       refuse_unsupported(law.table(), settings.file + " " + entry.pointer + ": " + owner);
@@ -67,7 +76,6 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
                                        foreign_keys(m.properties, law.material()))
                         .values[0];
       }
-      for (const auto& key : table_keys(law.material())) known.push_back(key);
       for (int direction = 0; direction < 2; ++direction) {
         LawList& list = direction == 0 ? *list_ab : *list_ba;
         LawTerm term;
@@ -94,7 +102,6 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
   std::vector<const ContactLaw*> all;
   for (const auto& law : out.laws) all.push_back(law.get());
   check_material_units(all);
-  for (const auto& m : settings.materials) check_keys(m.properties, known, settings.file);
   return out;
 }
 

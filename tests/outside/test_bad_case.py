@@ -10,6 +10,9 @@ class BadCase(CalxTest):
     def test_unknown_key(self):
         self.refuses(CASE, cup({"/materials/glass/yuong": 1e7}), r"case\.json /materials/glass/yuong: unknown key",
                      r'did you mean "young"\?')
+        # Written in place of the right key, it is named before the key that is missing.
+        self.refuses(CASE, cup({"/materials/glass/young": None, "/materials/glass/yuong": 1e7}),
+                     r"case\.json /materials/glass/yuong: unknown key", r'did you mean "young"\?')
         self.refuses(CASE, cup({"/time/ende": 1}), r"case\.json /time/ende: unknown key; did you mean \"end\"\?")
         self.refuses(CASE, cup({"/contacts/0/parameters/friktion": 1}),
                      r"/contacts/0/parameters/friktion: unknown key for calx\.hertz-mindlin", r'did you mean "friction"\?')
