@@ -137,8 +137,12 @@ void read_summary(const json& all, RunFolder& run) {
   }
   for (const json& row : member(all, "step_limits")) {
     run.limits.push_back({text_of(row, {"name"}), text_of(row, {"where"}), number(row, "seconds", 0),
-                          member(row, "binds") == json(true)});
+                          number(row, "refused_above", 0), member(row, "binds") == json(true)});
   }
+  const json seen = member(all, "law_limit_seen");
+  run.law_limit_seen = {"law", text_of(seen, {"where"}), number(seen, "seconds", 0), 0, false};
+  run.largest_overlap_share = number(all, "largest_overlap_share", -1);
+  run.overlap_limit = number(all, "overlap_limit", 0);
   read_provenance(member(all, "provenance"), run);
   for (const json& row : member(all, "assumptions")) run.assumptions.push_back(plain(row));
   for (const json& row : member(all, "deviations")) {

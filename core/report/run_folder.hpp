@@ -32,6 +32,7 @@ struct SensorSeries {
 struct StepLimitRow {
   std::string name, where;
   double seconds = 0;
+  double refused_above = 0;  // s; 0: not stated
   bool binds = false;
 };
 
@@ -55,6 +56,8 @@ struct RunFolder {
   std::vector<NamedValue> mass, energy;
   std::vector<SensorSeries> sensors;
   std::vector<StepLimitRow> limits;
+  StepLimitRow law_limit_seen;                           // at the largest overlap of the run; seconds 0: not stated
+  double largest_overlap_share = -1, overlap_limit = 0;  // of the radius; -1, 0: not stated
   std::vector<std::pair<std::string, std::string>> provenance;
   std::vector<PluginRow> plugins;
   std::vector<std::string> assumptions;

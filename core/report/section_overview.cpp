@@ -37,6 +37,40 @@ std::string list(const std::vector<std::string>& entries) {
   return out + "</ol>";
 }
 
+/// The time step beside the advice. A step that the case gives above it is judged by the overlaps of the run: none of
+/// the limits is exact, so that a run that ended is no failure of itself.
+std::string step_check(const RunFolder& run) {
+  const auto binding = std::find_if(run.limits.begin(), run.limits.end(),
+                                    [](const StepLimitRow& l) { return l.binds && l.seconds > 0; });
+  if (binding == run.limits.end() || !(run.time_step > 0)) return "";
+  const auto seconds = [](double s) { return format_quantity(s, "s", 4); };
+  const std::string advice =
+      "Advice: " + html_text(binding->name) + (binding->where.empty() ? "" : ", " + html_text(binding->where)) + ".";
+  if (run.time_step <= binding->seconds * (1 + 1e-9))
+    return row("good",
+               "Time step " + seconds(run.time_step) + " is within the advised " + seconds(binding->seconds) + ".",
+               advice);
+  std::string text = advice;
+  double refused = 0;
+  for (const StepLimitRow& l : run.limits)
+    if (l.refused_above > 0 && (refused == 0 || l.refused_above < refused)) refused = l.refused_above;
+  if (refused > 0) text += " A step above " + seconds(refused) + " is refused.";
+  if (run.largest_overlap_share >= 0)
+    text += " Largest overlap seen: " + format_number(run.largest_overlap_share, 3) + " of the radius" +
+            (run.overlap_limit > 0 ? " (limit " + format_number(run.overlap_limit, 3) + ")" : "") + ".";
+  const StepLimitRow& seen = run.law_limit_seen;
+  if (seen.seconds > 0)
+    text += " At that overlap the law states a stable step of " + seconds(seen.seconds) + " (" + html_text(seen.where) +
+            ")" +
+            (run.time_step <= seen.seconds
+                 ? ", which the step keeps."
+                 : ": the step was above it for such a contact, so compare with a run at that step.");
+  if (run.status == "stopped") text += " The run stopped early; a smaller step is the first thing to try.";
+  return row(run.status == "stopped" ? "bad" : "open",
+             "Time step " + seconds(run.time_step) + " is given, above the advised " + seconds(binding->seconds) + ".",
+             text);
+}
+
 }  // namespace
 
 void Sections::header() {
@@ -116,15 +150,7 @@ void Sections::overview() {
         "Sources delivered " + format_quantity(delivered, "kg", 4) + " of " + format_quantity(requested, "kg", 4) + ".",
         full ? "" : "A source had no room, or the run ended before it was done.");
   }
-  for (const StepLimitRow& l : run.limits) {
-    if (!l.binds || !(run.time_step > 0) || !(l.seconds > 0)) continue;
-    const bool below = run.time_step <= l.seconds * (1 + 1e-9);
-    checks += row(below ? "good" : "bad",
-                  "Time step " + format_quantity(run.time_step, "s", 4) + (below ? " is within" : " is above") +
-                      " the binding limit.",
-                  html_text(l.name) + ", " + format_quantity(l.seconds, "s", 4) +
-                      (l.where.empty() ? "" : " (" + html_text(l.where) + ")") + ".");
-  }
+  checks += step_check(run);
   for (const std::string& n : run.notes) checks += row("open", "Not complete:", html_text(n) + ".");
   checks += "</ul>";
 

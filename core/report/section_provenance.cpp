@@ -17,7 +17,8 @@ void Sections::time_step() {
       if (l.seconds > 0 && std::isfinite(l.seconds))
         longest = std::max(longest, l.seconds), shortest = std::min(shortest, l.seconds);
     }
-    if (run.time_step > 0) shortest = std::min(shortest, run.time_step);
+    for (const double taken : {run.time_step, run.law_limit_seen.seconds})
+      if (taken > 0) shortest = std::min(shortest, taken);
     // Bars on a logarithmic scale from a third of the shortest to the longest: limits differ by powers of ten.
     const double low = std::log(shortest / 3), high = std::log(longest);
     const auto bar = [&](double seconds, const char* css) {
@@ -26,15 +27,22 @@ void Sections::time_step() {
       return "<span class=\"bar " + std::string(css) + "\"><i style=\"width:" + format_number(share, 3) +
              "%\"></i></span>";
     };
-    std::vector<std::vector<std::string>> rows = {{"Limit", "Where", "", "Seconds", "Step / limit"}};
+    std::vector<std::vector<std::string>> rows = {
+        {"Advised by", "Where", "", "At most", "Step / advice", "Refused above"}};
     for (const StepLimitRow& l : run.limits) {
       const std::string name = html_text(l.name);
       rows.push_back({l.binds ? "<b>" + name + "</b> <span class=\"tag\">binds</span>" : name, html_text(l.where),
                       bar(l.seconds, l.binds ? "binds" : ""), format_quantity(l.seconds, "s", 4),
-                      run.time_step > 0 && l.seconds > 0 ? format_number(run.time_step / l.seconds, 3) : "-"});
+                      run.time_step > 0 && l.seconds > 0 ? format_number(run.time_step / l.seconds, 3) : "-",
+                      l.refused_above > 0 ? format_quantity(l.refused_above, "s", 4) : "-"});
     }
+    const StepLimitRow& seen = run.law_limit_seen;
+    if (seen.seconds > 0)
+      rows.push_back({"law, largest overlap of the run", html_text(seen.where), bar(seen.seconds, ""),
+                      format_quantity(seen.seconds, "s", 4),
+                      run.time_step > 0 ? format_number(run.time_step / seen.seconds, 3) : "-", ""});
     if (run.time_step > 0)
-      rows.push_back({"step taken", "", bar(run.time_step, "taken"), format_quantity(run.time_step, "s", 4), ""});
+      rows.push_back({"step taken", "", bar(run.time_step, "taken"), format_quantity(run.time_step, "s", 4), "", ""});
     out = html_table(rows, 3, "limits") + "<p class=\"note\">Bars: logarithmic scale.</p>";
   }
   page.section("time-step", "Time-step limits", "Time step", out);

@@ -1,6 +1,7 @@
 // check.cpp: what a run of a case would be, without the run.
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,16 @@ namespace calx {
 
 using Json = nlohmann::json;
 
+namespace {
+
+double least_refused(const std::vector<StepLimit>& limits) {
+  double least = limits.front().refused_above;
+  for (const auto& l : limits) least = std::min(least, l.refused_above);
+  return least;
+}
+
+}  // namespace
+
 std::string check_case(const RunOptions& options) {
   Simulation sim(read_whole_case(options), options.simulation);
   const CaseSettings& c = sim.settings();
@@ -22,8 +33,14 @@ std::string check_case(const RunOptions& options) {
   auto line = [&](const std::string& text) { out += text + "\n"; };
   line(c.title.empty() ? c.file : c.title);
   line("");
-  line("Time step " + brief_quantity(sim.time_step(), "s") + (c.time.step > 0 ? " (given)" : "") + "; limits:");
-  for (const auto& l : sim.step_limits())
+  const auto limits = sim.step_limits();
+  const auto binding = std::find_if(limits.begin(), limits.end(), [](const StepLimit& l) { return l.binds; });
+  std::string given = c.time.step > 0 ? " (given)" : "";
+  if (c.time.step > 0 && binding != limits.end() && c.time.step > binding->seconds)
+    given = " (given, above the advised " + brief_quantity(binding->seconds, "s") + "; refused above " +
+            brief_quantity(least_refused(limits), "s") + ")";
+  line("Time step " + brief_quantity(sim.time_step(), "s") + given + "; limits:");
+  for (const auto& l : limits)
     line("  " + std::string(l.binds ? "* " : "  ") + l.name +
          std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') + brief_quantity(l.seconds, "s") + "  " + l.where +
          (l.binds ? "  <- binds" : ""));

@@ -208,6 +208,9 @@ double Simulation::time() const { return impl_->w.now; }
 std::uint64_t Simulation::step_count() const { return impl_->w.steps; }
 double Simulation::time_step() const { return impl_->w.dt; }
 std::vector<StepLimit> Simulation::step_limits() const { return impl_->w.limits; }
+StepLimit Simulation::law_limit_seen() const {
+  return law_limit_at(step_inputs(impl_->w), impl_->w.engine.largest_overlap());
+}
 std::vector<std::unique_ptr<Sensor>>& Simulation::sensors() { return impl_->w.sensors; }
 std::vector<PluginProvenance> Simulation::provenance() const { return impl_->w.registry->provenance(); }
 std::size_t Simulation::memory_bytes() const { return impl_->w.engine.memory_bytes(); }

@@ -18,8 +18,9 @@ struct SimulationOptions {
 
 /// One time-step limit and where it comes from.
 struct StepLimit {
-  std::string name, where;  // "Rayleigh", "calcine, smallest sphere 1.25 mm"
-  double seconds = 0;
+  std::string name, where;   // "rayleigh", "10 % of 60.5 us, calcine sphere of radius 1.25 mm"
+  double seconds = 0;        // advised, s
+  double refused_above = 0;  // a step given by the case may be as long as this, s
   bool binds = false;
 };
 
@@ -35,6 +36,8 @@ class Simulation {
   std::uint64_t step_count() const;
   double time_step() const;
   std::vector<StepLimit> step_limits() const;
+  /// The smallest limit of a law at the largest overlap of the run so far; seconds 0: no law states one, or no contact.
+  StepLimit law_limit_seen() const;
   /// Law parameters the case left to their presets, one line each.
   std::vector<std::string> presets() const;
   bool finished() const;  // end time or end event reached

@@ -78,7 +78,13 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
   j["time_step"] = s.time_step();
   j["integrator"] = c.time.integrator == TimeSettings::Integrator::verlet ? "verlet" : "euler";
   for (const auto& l : s.step_limits())
-    j["step_limits"].push_back({{"name", l.name}, {"where", l.where}, {"seconds", l.seconds}, {"binds", l.binds}});
+    j["step_limits"].push_back({{"name", l.name},
+                                {"where", l.where},
+                                {"seconds", l.seconds},
+                                {"refused_above", l.refused_above},
+                                {"binds", l.binds}});
+  const StepLimit seen = s.law_limit_seen();
+  if (seen.seconds > 0) j["law_limit_seen"] = {{"where", seen.where}, {"seconds", seen.seconds}};
   j["particles"] = world.particles().count();
   j["spheres"] = world.particles().sphere_count();
   j["mass"] = mass_json(world);
@@ -96,6 +102,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
   j["events"] = Json::array();
   for (const auto& e : facts.events) j["events"].push_back({{"name", e.first}, {"time", e.second}});
   j["largest_overlap_share"] = counters.largest_overlap;
+  j["overlap_limit"] = c.overlap_limit;
   j["list_rebuilds"] = counters.rebuilds;
   j["memory_bytes"] = s.memory_bytes();
   j["wall_seconds"] = facts.wall_seconds;

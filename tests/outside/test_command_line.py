@@ -120,6 +120,10 @@ class CommandLine(CalxTest):
                         r"calx\.box 1\.\d+\.\d+  sha256 [0-9a-f]{12}  /\S*/calx_box\.so", r"(?m)^  - every value is made up$"):
             self.assertRegex(text, pattern)
         self.assertFalse((self.dir / "case.out").exists(), "check must not write")
+        above = self.calx("check", "case.json", "--set", f"/time/step={1.5 * least}").out
+        self.assertRegex(above, rf"(?m)^Time step \S+ s \(given, above the advised {least:g} s; refused above \S+ s\); limits:$")
+        below = self.calx("check", "case.json", "--set", f"/time/step={0.5 * least}").out
+        self.assertRegex(below, r"(?m)^Time step \S+ s \(given\); limits:$")
         large = self.calx("check", "case.json", "--set", "/time/end=3600", "--threads", 1).out
         self.assertRegex(large, r"Cost: about \d+ min \d\d s on 1 threads?")
 

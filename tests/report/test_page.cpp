@@ -80,6 +80,7 @@ TEST_CASE("a finished run gives its figures, charts, assumptions and provenance"
   CHECK(has(page, "Mass ledger closes."));
   CHECK(has(page, "Assumptions (4)"));
   CHECK(has(page, "rotor outer radius 25 mm"));
+  CHECK(has(page, "Time step 6.05\xc2\xa0us is within the advised 6.05\xc2\xa0us."));
   CHECK(has(page, "<b>Rayleigh</b> <span class=\"tag\">binds</span>"));
   CHECK(has(page, "77aa10ce"));
   CHECK(has(page, "-13.2\xc2\xa0%"));
@@ -104,6 +105,40 @@ TEST_CASE("a finished run gives its figures, charts, assumptions and provenance"
   }
   CHECK(charts[0]["marks"].size() == 3);
   CHECK(charts[0]["marks"][1]["name"] == "valve open");
+}
+
+TEST_CASE("a step above the advice is judged by what the run met, and is no failure") {
+  const auto page = [](const std::string& status, const std::string& more) {
+    const ScratchFolder folder;
+    std::ofstream(folder.path() + "/summary.json") << R"({"title": "t", "status": ")" << status
+                                                   << R"(", "time_step": 2e-5, "step_limits": [
+             {"name": "rayleigh", "where": "10 % of 192 us", "seconds": 1.92e-5, "refused_above": 9.6e-5, "binds": false},
+             {"name": "law", "where": "calcine-steel at an overlap of 0.0004 m", "seconds": 1.06e-5, "refused_above": 3.2e-5,
+              "binds": true}])" << more << "}";
+    std::string text = slurp(write_report(folder.path()));
+    for (std::size_t at; (at = text.find("\xc2\xa0")) != std::string::npos;) text.replace(at, 2, " ");
+    return text;
+  };
+  const std::string above =
+      "<li class=\"open\"><b>Time step 20 us is given, above the advised 10.6 us.</b> Advice: law, calcine-steel at an "
+      "overlap of 0.0004 m. A step above 32 us is refused.";
+  const std::string plain = page("done", "");
+  CHECK(has(plain, above + "</li>"));
+  const std::string kept = page("done", R"(, "largest_overlap_share": 0.0312, "overlap_limit": 0.5,
+    "law_limit_seen": {"where": "calcine-steel at an overlap of 3.9e-05 m", "seconds": 2.1e-5})");
+  CHECK(has(kept, above +
+                      " Largest overlap seen: 0.0312 of the radius (limit 0.5). At that overlap the law states a "
+                      "stable step of 21 us (calcine-steel at an overlap of 3.9e-05 m), which the step keeps.</li>"));
+  const std::string beyond = page("done", R"(, "largest_overlap_share": 0.889, "overlap_limit": 0.95,
+    "law_limit_seen": {"where": "calcine-steel at an overlap of 0.0011 m", "seconds": 8.3e-6})");
+  CHECK(has(beyond, above));
+  CHECK(has(beyond,
+            "stable step of 8.3 us (calcine-steel at an overlap of 0.0011 m): the step was above it for such a "
+            "contact, so compare with a run at that step.</li>"));
+  CHECK(has(beyond, "law, largest overlap of the run"));
+  const std::string stopped = page("stopped", "");
+  CHECK(has(stopped, "<li class=\"bad\"><b>Time step 20 us is given"));
+  CHECK(has(stopped, "a smaller step is the first thing to try.</li>"));
 }
 
 TEST_CASE("the page refers to nothing outside itself and its data cannot become markup") {

@@ -91,6 +91,27 @@ TEST_CASE("a step of the case's own is taken, up to what is stable") {
   CHECK_THROWS_WITH_AS(Simulation(c.file(), test_options()), doctest::Contains("or leave \"step\" out"), Error);
 }
 
+TEST_CASE("each limit says above what a given step is refused") {
+  CaseText c = dropped();
+  c.time = R"({"rayleigh_fraction": 0.2, "end": 1})";
+  const auto all = Simulation(c.file(), test_options()).step_limits();
+  CHECK(limit(all, "rayleigh").refused_above == near(2.5 * limit(all, "rayleigh").seconds, 1e-12));
+  CHECK(limit(all, "hertz").refused_above == near(4 * limit(all, "hertz").seconds, 1e-12));
+  CHECK(limit(all, "law").refused_above == near(3 * limit(all, "law").seconds, 1e-12));
+}
+
+TEST_CASE("the law's limit at the largest overlap of the run is told") {
+  CaseText c;
+  c.time = R"({"step": 1e-6, "end": 1})";
+  // Two balls of 1 mm overlap by 0.04 mm at the start; they part, so that this stays the largest overlap.
+  Simulation sim(with_given(c, "ball", {{{0, 0, 0}, {}, {}, {}}, {{0.00196, 0, 0}, {}, {}, {}}}), test_options());
+  CHECK(sim.law_limit_seen().seconds == 0);
+  advance(sim, 20);
+  const double m = 2000 * 4.0 / 3 * kPi * 1e-9 / 2, r = 5e-4, e = 1e7 / (2 * (1 - 0.0625));
+  CHECK(sim.law_limit_seen().seconds == near(0.17 * std::sqrt(m / (2 * e * std::sqrt(r * 4e-5))), 1e-6));
+  CHECK(sim.law_limit_seen().where == "sand-sand at an overlap of 4e-05 m");
+}
+
 TEST_CASE("moduli give the Rayleigh limit also where the law does not read them") {
   CaseText c = dropped();
   c.contacts =
