@@ -90,7 +90,7 @@ std::string needs_text(const ContactLaw& law) {
 }
 
 /// The kind of a usable plugin, for commands that are given an id alone.
-std::string kind_of(const PluginRegistry& registry, const std::string& id) {
+std::string kind_of(const PluginRegistry& registry, const std::vector<std::string>& search, const std::string& id) {
   std::vector<std::string> known;
   for (const PluginManifest& m : registry.manifests()) {
     if (m.id == id && m.refused.empty()) return m.kind;
@@ -98,7 +98,10 @@ std::string kind_of(const PluginRegistry& registry, const std::string& id) {
   }
   for (const PluginManifest& m : registry.manifests())
     if (m.id == id) throw Error(Fault::plugin, "plugin " + id + " refused: " + m.refused);
-  throw Error(Fault::plugin, "no plugin " + id + " found; " + did_you_mean(id, known));
+  std::string folders;
+  for (const std::string& folder : search) folders += (folders.empty() ? "" : ", ") + folder;
+  throw Error(Fault::plugin, "no plugin " + id + " found in " + (folders.empty() ? "any folder" : folders) + "; " +
+                                 did_you_mean(id, known));
 }
 
 /// A law made with presets, which always succeeds, to see the tables of its instance.
@@ -129,7 +132,7 @@ std::string plugin_list_text(const std::vector<std::string>& search) {
 
 std::string plugin_describe_text(const std::string& id, const std::vector<std::string>& search) {
   PluginRegistry registry(search);
-  const std::string kind = kind_of(registry, id);
+  const std::string kind = kind_of(registry, search, id);
   const calx_descriptor& d = registry.load(id, kind, "", "");
   const PluginProvenance from = registry.provenance().at(0);
   std::string out = std::string(d.id) + " " + d.version + "\n" + d.summary + "\n\n";
@@ -158,7 +161,7 @@ std::string plugin_describe_text(const std::string& id, const std::vector<std::s
 
 std::string plugin_schema_text(const std::string& id, const std::vector<std::string>& search) {
   PluginRegistry registry(search);
-  const std::string kind = kind_of(registry, id);
+  const std::string kind = kind_of(registry, search, id);
   const calx_descriptor& d = registry.load(id, kind, "", "");
   const std::string title = std::string("parameters of ") + d.id + " " + d.version;
   if (kind != CALX_CONTACT_LAW) return table_schema({{d.parameter, d.parameter_count}}, d.extra_schema, title);

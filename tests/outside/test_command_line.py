@@ -175,7 +175,7 @@ class CommandLine(CalxTest):
         self.assertEqual(schema["exponent"]["enum"], ["1", "1.5"])
         self.assertEqual(schema["plasticity"]["anyOf"][0], {"type": "number", "minimum": 0, "maximum": 0.99})
         for command in ("describe", "schema"):
-            self.fails(PLUGIN, "no plugin calx.epm", r'did you mean "calx\.epam"\?', result=self.calx("plugin", command, "calx.epm"))
+            self.fails(PLUGIN, r"no plugin calx\.epm found in /\S+", r'did you mean "calx\.epam"\?', result=self.calx("plugin", command, "calx.epm"))
 
 
 if __name__ == "__main__":

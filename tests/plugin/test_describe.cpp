@@ -74,7 +74,11 @@ TEST_CASE("describe tells every table of a contact law") {
 
 TEST_CASE("an unknown or refused id is answered with what is known") {
   CHECK(message_of([] { plugin_describe_text("org.example.sprang", {spring_folder}); }) ==
-        "no plugin org.example.sprang found; did you mean \"org.example.spring\"?");
+        "no plugin org.example.sprang found in " + spring_folder + "; did you mean \"org.example.spring\"?");
+  CHECK(message_of([] {
+          plugin_describe_text("NO.SUCH.ID", {spring_folder, "/nowhere"});
+        }) == "no plugin NO.SUCH.ID found in " + spring_folder + ", /nowhere; known is \"org.example.spring\"");
+  CHECK(message_of([] { plugin_describe_text("a.b", {}); }) == "no plugin a.b found in any folder; none is defined");
   Scratch scratch;
   scratch.write("x.plugin.json", manifest("test.x", "x.so"));
   CHECK(message_of([&] { plugin_schema_text("test.x", {scratch.path()}); }) ==
