@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -18,6 +19,16 @@ namespace {
 
 /// Conditions that look at particles are asked this often, s: short against a process, long against a step.
 constexpr double kEventInterval = 2e-3;
+
+/// For messages: more digits than these nobody reads.
+std::string six_digits(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+std::string six_digits(const Vec3& v) {
+  return "(" + six_digits(v.x) + ", " + six_digits(v.y) + ", " + six_digits(v.z) + ")";
+}
 
 std::uint32_t index_of(const std::vector<MaterialSettings>& materials, const std::string& name) {
   for (std::uint32_t k = 0; k < materials.size(); ++k)
@@ -236,18 +247,15 @@ void Simulation::step() {
   ++w.steps;
   w.now = static_cast<double>(w.steps) * w.dt;
   if (!report.message.empty())
-    throw Error(Fault::numerics, "run stopped at t = " + format_number(w.now) + " s: " + report.message);
+    throw Error(Fault::numerics, "run stopped at t = " + six_digits(w.now) + " s: " + report.message);
   if (!report.outside.empty()) {
     if (w.c.domain.on_leave == DomainSettings::OnLeave::error) {
       const std::uint32_t p = report.outside.front();
       const Record& b = w.engine.particles.body[p];
-      throw Error(Fault::numerics, "run stopped at t = " + format_number(w.now) + " s: particle " +
-                                       std::to_string(w.engine.particles.id[p]) + " left the domain at (" +
-                                       format_number(b.x) + ", " + format_number(b.y) + ", " + format_number(b.z) +
-                                       ") m with velocity (" + format_number(b.vx) + ", " + format_number(b.vy) + ", " +
-                                       format_number(b.vz) +
-                                       ") m/s; make \"domain\" larger or set \"on_leave\" to "
-                                       "\"delete\" or \"count\"");
+      throw Error(Fault::numerics, "run stopped at t = " + six_digits(w.now) + " s: particle " +
+                                       std::to_string(w.engine.particles.id[p]) + " left the domain at " +
+                                       six_digits(position(b)) + " m with velocity " + six_digits(velocity(b)) +
+                                       " m/s; make \"domain\" larger or set \"on_leave\" to \"delete\" or \"count\"");
     }
     w.leave(report.outside);
   }

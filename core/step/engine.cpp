@@ -313,9 +313,9 @@ GuardReport Engine::finish(double t, double dt) {
       load[k].tz += r.load[k].tz;
     }
     if (r.bad && report.message.empty()) {
-      const Record& b = particles.body[r.bad_particle];
-      report.message = "non-finite motion of particle " + std::to_string(particles.id[r.bad_particle]) +
-                       format(", last position (%.6g, %.6g, %.6g) m", b.x, b.y, b.z) +
+      const std::uint32_t p = r.bad_particle, sphere = particles.has_clumps ? particles.first_sphere[p] : p;
+      report.message = "non-finite motion of particle " + std::to_string(particles.id[p]) + ": " +
+                       bad_motion(particles.body[p], reference_[sphere]) +
                        "; the time step is too large or a law returned a non-finite force";
     }
   }

@@ -1,6 +1,7 @@
 // engine_detail.hpp: work spaces shared by the passes of a step. Private to step/.
 #pragma once
 #include <chrono>
+#include <string>
 #include <vector>
 
 #include "step/engine.hpp"
@@ -52,6 +53,10 @@ struct alignas(64) Engine::ChunkResult {
   std::vector<std::uint32_t> outside;
   std::vector<Wrench> load;  // on each part
 };
+
+/// Which numbers of a particle are not finite or beyond 1e30, and where it is, or where its first sphere was when the
+/// lists were built if that is no place: "velocity y, spin x, at (0, 0, 0.1) m".
+std::string bad_motion(const Record& particle, const Vec3& listed);
 
 inline double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

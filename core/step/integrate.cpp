@@ -1,5 +1,8 @@
 // integrate.cpp: sums of wrenches per particle, particle forces, and the two integrators.
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
 #include <utility>
 
 #include "step/engine_detail.hpp"
@@ -22,6 +25,9 @@ Vec3 spin_of(const Quat& q, const Vec3& i, const Vec3& l) {
   const Vec3 b = rotate(conjugate(q), l);
   return rotate(q, {b.x / i.x, b.y / i.y, b.z / i.z});
 }
+
+/// A place, speed or spin beyond this is no number any more, SI units.
+constexpr double kHuge = 1e30;
 
 /// Rows of a tile of the rotation loop; its columns stay in the first-level cache.
 constexpr std::uint32_t kTurnRows = 128;
@@ -269,6 +275,23 @@ void Engine::finish_verlet(std::size_t c, double dt) {
   if (particles.has_clumps) particles.refresh_members(chunk.first_particle, chunk.last_particle);
 }
 
+std::string bad_motion(const Record& b, const Vec3& listed) {
+  const std::pair<const char*, Vec3> kinds[] = {
+      {"position", position(b)}, {"velocity", velocity(b)}, {"spin", spin(b)}};
+  std::string out;
+  for (const auto& kind : kinds)
+    for (int k = 0; k < 3; ++k)
+      if (!(std::fabs(kind.second[k]) < kHuge))
+        out += (out.empty() ? "" : ", ") + std::string(kind.first) + ' ' + "xyz"[k];
+  const auto place = [](const Vec3& x) { return std::fabs(x.x) + std::fabs(x.y) + std::fabs(x.z) < kHuge; };
+  const bool now = place(position(b));
+  const Vec3 x = now ? position(b) : listed;
+  if (!place(x)) return out;
+  char text[96];
+  std::snprintf(text, sizeof text, ", %s (%.6g, %.6g, %.6g) m", now ? "at" : "last known at", x.x, x.y, x.z);
+  return out + text;
+}
+
 void Engine::guard_pass(std::size_t c) {
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
@@ -280,7 +303,7 @@ void Engine::guard_pass(std::size_t c) {
     const double size = std::fabs(b.x) + std::fabs(b.y) + std::fabs(b.z) + std::fabs(b.vx) + std::fabs(b.vy) +
                         std::fabs(b.vz) + std::fabs(b.wx) + std::fabs(b.wy) + std::fabs(b.wz);
     // Written so that a NaN counts as bad.
-    if (!(size < 1e30)) {
+    if (!(size < kHuge)) {
       if (!result.bad) result.bad_particle = p;
       result.bad = true;
       continue;

@@ -53,7 +53,8 @@ class Stopped(CalxTest):
     def test_not_a_number(self):
         build_force(self.dir / "mine", BAD_FORCE % "fx[0] += sqrt(-1.0 - block->time);")
         path = self.write(cup({"/forces": [{"plugin": "test.force"}]}))
-        self.stops(path, r"non-finite motion of particle \d+", words=("--plugin-path", "mine"), at=0.02)
+        self.stops(path, r"non-finite motion of particle \d+: position x, velocity x, last known at \([-\d., e]+\) m; ",
+                   words=("--plugin-path", "mine"), at=0.02)
 
     def test_blow_up(self):
         # 40 N on a ball of 0.08 g.

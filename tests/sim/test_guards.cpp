@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <regex>
 
 #include "base/error.hpp"
 #include "support/case.hpp"
@@ -43,6 +44,8 @@ TEST_CASE("a particle that leaves stops the run by default, named with place and
     CHECK(text.find("run stopped at t = 0.0005") == 0);
     CHECK(text.find("particle 1 left the domain at (0.01") != std::string::npos);
     CHECK(text.find("velocity (2, 0, 0) m/s") != std::string::npos);
+    // No number of more than six digits.
+    CHECK_FALSE(std::regex_search(text, std::regex("\\.0*[1-9][0-9]{6}|[1-9]\\.[0-9]{6}")));
     CHECK(text.find("\"on_leave\"") != std::string::npos);
   }
 }
@@ -95,7 +98,9 @@ TEST_CASE("a number that is not finite stops the run and names the particle") {
       Simulation sim(with_given(c, shape, {{{0, 0, 0}, {}, {}, {}}, {{0.1, 0, 0}, {1e200, 0, 0}, {}, {}}}),
                      test_options());
       const std::string text = failure(sim, 10);
-      CHECK(text.find("non-finite motion of particle 1") != std::string::npos);
+      CAPTURE(text);
+      CHECK(text.find("non-finite motion of particle 1: position x, velocity x") != std::string::npos);
+      CHECK(text.find("nan") == std::string::npos);
       CHECK(text.find("time step is too large") != std::string::npos);
     }
 }
