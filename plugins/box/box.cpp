@@ -1,6 +1,5 @@
 // box.cpp: an axis-parallel box, calx.box: a bin, a rig, a duct. Faces can be left open.
-#include <calx/plugin.hpp>
-#include <vector>
+#include <calx/shape.hpp>
 
 namespace {
 
@@ -22,7 +21,7 @@ const calx_field fields[] = {
 // counter-clockwise seen from outside.
 const uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-class Box : public calx::Instance {
+class Box : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
 
@@ -42,48 +41,22 @@ class Box : public calx::Instance {
     }
   }
 
-  const void* get_interface(const char* id) const override {
-    static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-    return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
+  calx_status send(const calx_shape_sink* sink) const override {
+    calx::shape::Triangles all;
+    for (int corner = 0; corner < 8; ++corner)
+      all.corner(corner & 1 ? hi_[0] : lo_[0], corner & 2 ? hi_[1] : lo_[1], corner & 4 ? hi_[2] : lo_[2]);
+    for (int f = 0; f < 6; ++f)
+      if (!open_[f]) all.quad(faces[f][0], faces[f][1], faces[f][2], faces[f][3]);
+    return all.send(sink);
   }
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host*,
-                                     const calx_shape_sink* sink) noexcept {
-    const Box& self = *static_cast<const Box*>(instance);
-    double xyz[24];
-    for (int corner = 0; corner < 8; ++corner)
-      for (int k = 0; k < 3; ++k) xyz[3 * corner + k] = (corner >> k) & 1 ? self.hi_[k] : self.lo_[k];
-    uint32_t index[36];
-    uint64_t count = 0;
-    for (int f = 0; f < 6; ++f) {
-      if (self.open_[f]) continue;
-      const uint32_t* q = faces[f];
-      const uint32_t two[] = {q[0], q[1], q[2], q[0], q[2], q[3]};
-      for (int k = 0; k < 6; ++k) index[3 * count + k] = two[k];
-      count += 2;
-    }
-    return sink->triangles(sink, 8, xyz, count, index);
-  }
-
   double lo_[3], hi_[3];
   bool open_[6];
 };
 
-const calx_descriptor Box::descriptor = {sizeof(calx_descriptor),
-                                         0,
-                                         "calx.box",
-                                         CALX_GEOMETRY,
-                                         "Box",
-                                         "1.0.0",
-                                         "Calx",
-                                         "Apache-2.0",
-                                         "A box whose faces can be left open.",
-                                         0,
-                                         fields,
-                                         sizeof fields / sizeof fields[0],
-                                         0,
-                                         0};
+const calx_descriptor Box::descriptor = calx::shape::descriptor("calx.box", "Box", "1.0.0", "Calx", "Apache-2.0",
+                                                                "A box whose faces can be left open.", fields);
 
 }  // namespace
 

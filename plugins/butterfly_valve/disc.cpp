@@ -18,37 +18,17 @@ const calx_field fields[] = {
 
 Disc::Disc(const calx_host*, const calx_config& c)
     : radius_(calx::parameter(descriptor, c, "radius")), half_(calx::parameter(descriptor, c, "thickness") / 2) {
-  const char* const names[] = {"position_x", "position_y", "position_z"};
-  for (int k = 0; k < 3; ++k) position_[k] = calx::parameter(descriptor, c, names[k]);
+  calx::shape::read_vector(descriptor, c, "position", position_);
   const double angle = calx::parameter(descriptor, c, "angle");
   normal_[0] = std::sin(angle);
   normal_[1] = 0;
   normal_[2] = std::cos(angle);
 }
 
-const void* Disc::get_interface(const char* id) const {
-  static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-  return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
+calx_status Disc::send(const calx_shape_sink* sink) const {
+  const double r_z[] = {0, -half_, radius_, -half_, radius_, half_, 0, half_};
+  return sink->revolution(sink, position_, normal_, 4, r_z, 0);
 }
 
-calx_status CALX_CALL Disc::build(const calx_instance* instance, const calx_host*,
-                                  const calx_shape_sink* sink) noexcept {
-  const Disc& d = *static_cast<const Disc*>(instance);
-  const double r_z[] = {0, -d.half_, d.radius_, -d.half_, d.radius_, d.half_, 0, d.half_};
-  return sink->revolution(sink, d.position_, d.normal_, 4, r_z, 0);
-}
-
-const calx_descriptor Disc::descriptor = {sizeof(calx_descriptor),
-                                          0,
-                                          "calx.butterfly-valve",
-                                          CALX_GEOMETRY,
-                                          "Butterfly disc",
-                                          "1.0.0",
-                                          "Calx",
-                                          "Apache-2.0",
-                                          "The disc of a butterfly valve.",
-                                          0,
-                                          fields,
-                                          sizeof fields / sizeof fields[0],
-                                          0,
-                                          0};
+const calx_descriptor Disc::descriptor = calx::shape::descriptor(
+    "calx.butterfly-valve", "Butterfly disc", "1.0.0", "Calx", "Apache-2.0", "The disc of a butterfly valve.", fields);

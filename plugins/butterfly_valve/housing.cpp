@@ -29,8 +29,7 @@ const calx_field fields[] = {
 
 Housing::Housing(const calx_host*, const calx_config& c) {
   const auto get = [&](const char* name) { return calx::parameter(descriptor, c, name); };
-  const char* const names[] = {"position_x", "position_y", "position_z"};
-  for (int k = 0; k < 3; ++k) position_[k] = get(names[k]);
+  calx::shape::read_vector(descriptor, c, "position", position_);
   bore_radius_ = get("bore_radius");
   bore_height_ = get("bore_height");
   has_throat_ = get("throat") > 0.5;
@@ -49,18 +48,6 @@ Housing::Housing(const calx_host*, const calx_config& c) {
     throw calx::ConfigError(
         "loft_height: the loft ends at z = " + std::to_string(position_[2] - loft_height_) +
         " m, within the rotor housing, whose top is at z = " + std::to_string(rotor_z_ + rotor_bore_) + " m");
-}
-
-const void* Housing::get_interface(const char* id) const {
-  static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-  return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
-}
-
-calx_status CALX_CALL Housing::build(const calx_instance* instance, const calx_host* host,
-                                     const calx_shape_sink* sink) noexcept {
-  calx_status status = CALX_OK;
-  const calx_status mine = calx::guard(host, [&] { status = static_cast<const Housing*>(instance)->send(sink); });
-  return mine < 0 ? mine : status;
 }
 
 /// Height of the throat's lower end at x from the axis: on the rotor bore; beside it above the port's edge.
@@ -88,13 +75,9 @@ calx_status Housing::send(const calx_shape_sink* sink) const {
   angles.insert(angles.end(), own.begin(), own.end());
   std::sort(angles.begin(), angles.end());
 
-  std::vector<double> xyz;  // three rings: round end, rectangle, lower end
+  calx::shape::Triangles all;  // three rings: round end, rectangle, lower end
   const uint32_t n = static_cast<uint32_t>(angles.size());
-  const auto add = [&](double x, double y, double z) {
-    xyz.push_back(position_[0] + x);
-    xyz.push_back(position_[1] + y);
-    xyz.push_back(z);
-  };
+  const auto add = [&](double x, double y, double z) { all.corner(position_[0] + x, position_[1] + y, z); };
   for (const double a : angles) add(bore_radius_ * std::cos(a), bore_radius_ * std::sin(a), position_[2]);
   for (int ring = 0; ring < 2; ++ring)
     for (const double a : angles) {
@@ -106,28 +89,15 @@ calx_status Housing::send(const calx_shape_sink* sink) const {
       const double x = s * cx, y = s * cy;
       add(x, y, ring == 0 ? position_[2] - loft_height_ : throat_end(x, beside));
     }
-  std::vector<uint32_t> index;
   for (uint32_t ring = 0; ring < 2; ++ring)
     for (uint32_t k = 0; k < n; ++k) {
       // Counter-clockwise from outside; ring 0 is above ring 1.
-      const uint32_t a = ring * n + k, b = ring * n + (k + 1) % n, two[] = {a, a + n, b + n, a, b + n, b};
-      index.insert(index.end(), two, two + 6);
+      const uint32_t a = ring * n + k, b = ring * n + (k + 1) % n;
+      all.quad(a, a + n, b + n, b);
     }
-  return sink->triangles(sink, xyz.size() / 3, xyz.data(), index.size() / 3, index.data());
+  return all.send(sink);
 }
 
-const calx_descriptor Housing::descriptor = {
-    sizeof(calx_descriptor),
-    0,
-    "calx.butterfly-housing",
-    CALX_GEOMETRY,
-    "Butterfly housing",
-    "1.0.0",
-    "Calx",
-    "Apache-2.0",
-    "The bore of a butterfly valve, with the loft and throat below it as an option.",
-    0,
-    fields,
-    sizeof fields / sizeof fields[0],
-    0,
-    0};
+const calx_descriptor Housing::descriptor =
+    calx::shape::descriptor("calx.butterfly-housing", "Butterfly housing", "1.0.0", "Calx", "Apache-2.0",
+                            "The bore of a butterfly valve, with the loft and throat below it as an option.", fields);

@@ -1,5 +1,5 @@
 // cylinder.cpp: a round tube between two points, calx.cylinder: exact as a surface of revolution, or faceted.
-#include <calx/plugin.hpp>
+#include <calx/shape.hpp>
 #include <cmath>
 #include <vector>
 
@@ -18,7 +18,7 @@ const calx_field fields[] = {
     {"facets", "1", "flat facets round the tube, their edges on the circle; 0 is smooth and exact", 0, 10000, 0,
      CALX_FIELD_INTEGER, 0}};
 
-class Cylinder : public calx::Instance {
+class Cylinder : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
 
@@ -42,20 +42,9 @@ class Cylinder : public calx::Instance {
       throw calx::ConfigError("facets: " + std::to_string(facets_) + " is too few; give 0 (smooth) or 3 and more");
   }
 
-  const void* get_interface(const char* id) const override {
-    static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-    return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
-  }
+  calx_status send(const calx_shape_sink* sink) const override { return facets_ ? faceted(sink) : smooth(sink); }
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host* host,
-                                     const calx_shape_sink* sink) noexcept {
-    const Cylinder& self = *static_cast<const Cylinder*>(instance);
-    calx_status status = CALX_OK;
-    const calx_status mine = calx::guard(host, [&] { status = self.facets_ ? self.faceted(sink) : self.smooth(sink); });
-    return mine < 0 ? mine : status;
-  }
-
   calx_status smooth(const calx_shape_sink* sink) const {
     std::vector<double> r_z;
     const auto add = [&](double r, double z) { r_z.push_back(r), r_z.push_back(z); };
@@ -74,26 +63,23 @@ class Cylinder : public calx::Instance {
     const double e = std::sqrt(e1[0] * e1[0] + e1[1] * e1[1] + e1[2] * e1[2]);
     for (int k = 0; k < 3; ++k) e1[k] /= e;
     for (int k = 0; k < 3; ++k) e2[k] = axis_[(k + 1) % 3] * e1[(k + 2) % 3] - axis_[(k + 2) % 3] * e1[(k + 1) % 3];
-    std::vector<double> xyz;
-    for (int end = 0; end < 2; ++end) {
-      const double z = end ? length_ : 0;
-      for (uint32_t f = 0; f < n; ++f) {
-        const double angle = 6.28318530717958648 * f / n;
-        for (int k = 0; k < 3; ++k)
-          xyz.push_back(from_[k] + z * axis_[k] + radius_ * (std::cos(angle) * e1[k] + std::sin(angle) * e2[k]));
-      }
-    }
-    for (int end = 0; end < 2; ++end)
-      for (int k = 0; k < 3; ++k) xyz.push_back(from_[k] + (end ? length_ : 0) * axis_[k]);
-    std::vector<uint32_t> index;
+    calx::shape::Triangles all;
+    const auto corner = [&](double z, double r, double angle) {
+      double x[3];
+      for (int k = 0; k < 3; ++k)
+        x[k] = from_[k] + z * axis_[k] + r * (std::cos(angle) * e1[k] + std::sin(angle) * e2[k]);
+      return all.corner(x[0], x[1], x[2]);
+    };
+    for (const double z : {0.0, length_})
+      for (uint32_t f = 0; f < n; ++f) corner(z, radius_, 6.28318530717958648 * f / n);
+    const uint32_t bottom = corner(0, 0, 0), top = corner(length_, 0, 0);
     for (uint32_t f = 0; f < n; ++f) {
       const uint32_t a = f, b = (f + 1) % n, c = n + b, d = n + f;
-      const uint32_t side[] = {a, b, c, a, c, d}, floor[] = {2 * n, b, a}, lid[] = {2 * n + 1, d, c};
-      index.insert(index.end(), side, side + 6);
-      if (bottom_) index.insert(index.end(), floor, floor + 3);
-      if (top_) index.insert(index.end(), lid, lid + 3);
+      all.quad(a, b, c, d);
+      if (bottom_) all.triangle(bottom, b, a);
+      if (top_) all.triangle(top, d, c);
     }
-    return sink->triangles(sink, xyz.size() / 3, xyz.data(), index.size() / 3, index.data());
+    return all.send(sink);
   }
 
   double from_[3], axis_[3], length_, radius_;
@@ -101,20 +87,9 @@ class Cylinder : public calx::Instance {
   bool bottom_, top_;
 };
 
-const calx_descriptor Cylinder::descriptor = {sizeof(calx_descriptor),
-                                              0,
-                                              "calx.cylinder",
-                                              CALX_GEOMETRY,
-                                              "Cylinder",
-                                              "1.0.0",
-                                              "Calx",
-                                              "Apache-2.0",
-                                              "A round tube or drum between two points, smooth or faceted.",
-                                              0,
-                                              fields,
-                                              sizeof fields / sizeof fields[0],
-                                              0,
-                                              0};
+const calx_descriptor Cylinder::descriptor =
+    calx::shape::descriptor("calx.cylinder", "Cylinder", "1.0.0", "Calx", "Apache-2.0",
+                            "A round tube or drum between two points, smooth or faceted.", fields);
 
 }  // namespace
 

@@ -1,6 +1,5 @@
 // hopper.cpp: a conical hopper below a cylinder, calx.hopper, as one surface of revolution about a vertical axis.
-#include <calx/plugin.hpp>
-#include <vector>
+#include <calx/shape.hpp>
 
 namespace {
 
@@ -16,12 +15,11 @@ const calx_field fields[] = {
      0, 0},
     {"cylinder_height", "m", "height of the cylinder above the cone (assumption)", 0, 1e6, 0.170, 0, 0}};
 
-class Hopper : public calx::Instance {
+class Hopper : public calx::shape::Revolved {
  public:
   static const calx_descriptor descriptor;
 
-  Hopper(const calx_host*, const calx_config& c) {
-    for (int k = 0; k < 3; ++k) position_[k] = calx::parameter(descriptor, c, position_names[k]);
+  Hopper(const calx_host*, const calx_config& c) : Revolved(descriptor, c) {
     const double bore = calx::parameter(descriptor, c, "bore_radius"),
                  top = calx::parameter(descriptor, c, "top_radius");
     const double cone = calx::parameter(descriptor, c, "cone_height");
@@ -36,47 +34,10 @@ class Hopper : public calx::Instance {
     add(top, cone);
     if (cylinder > 0) add(top, cone + cylinder);
   }
-
-  const void* get_interface(const char* id) const override {
-    static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-    return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
-  }
-
- private:
-  static const char* const position_names[3];
-
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host*,
-                                     const calx_shape_sink* sink) noexcept {
-    const Hopper& self = *static_cast<const Hopper*>(instance);
-    const double up[3] = {0, 0, 1};
-    return sink->revolution(sink, self.position_, up, self.profile_.size() / 2, self.profile_.data(), 0);
-  }
-
-  void add(double r, double z) {
-    profile_.push_back(r);
-    profile_.push_back(z);
-  }
-
-  double position_[3];
-  std::vector<double> profile_;  // (r, z) pairs from the outlet upwards, z from position, m
 };
 
-const char* const Hopper::position_names[3] = {"position_x", "position_y", "position_z"};
-
-const calx_descriptor Hopper::descriptor = {sizeof(calx_descriptor),
-                                            0,
-                                            "calx.hopper",
-                                            CALX_GEOMETRY,
-                                            "Hopper",
-                                            "1.0.0",
-                                            "Calx",
-                                            "Apache-2.0",
-                                            "A conical hopper with a cylinder on top, smooth.",
-                                            0,
-                                            fields,
-                                            sizeof fields / sizeof fields[0],
-                                            0,
-                                            0};
+const calx_descriptor Hopper::descriptor = calx::shape::descriptor(
+    "calx.hopper", "Hopper", "1.0.0", "Calx", "Apache-2.0", "A conical hopper with a cylinder on top, smooth.", fields);
 
 }  // namespace
 

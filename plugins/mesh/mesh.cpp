@@ -1,6 +1,6 @@
 // mesh.cpp: walls from an STL file, calx.mesh. Faults that would let grains through or double a wall are refused by
 // name.
-#include <calx/plugin.hpp>
+#include <calx/shape.hpp>
 #include <vector>
 
 #include "faults.hpp"
@@ -26,7 +26,7 @@ const char extra_schema[] =
 
 const double unit_length[] = {1, 1e-3, 1e-2, 0.0254};
 
-class Mesh : public calx::Instance {
+class Mesh : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
 
@@ -46,35 +46,17 @@ class Mesh : public calx::Instance {
     if (mesh_.index.empty()) throw calx::ConfigError("file: " + path + ": no triangle has an area");
   }
 
-  const void* get_interface(const char* id) const override {
-    static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-    return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
+  calx_status send(const calx_shape_sink* sink) const override {
+    return sink->triangles(sink, mesh_.xyz.size() / 3, mesh_.xyz.data(), mesh_.index.size() / 3, mesh_.index.data());
   }
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host*,
-                                     const calx_shape_sink* sink) noexcept {
-    const CheckedMesh& m = static_cast<const Mesh*>(instance)->mesh_;
-    return sink->triangles(sink, m.xyz.size() / 3, m.xyz.data(), m.index.size() / 3, m.index.data());
-  }
-
   CheckedMesh mesh_;
 };
 
-const calx_descriptor Mesh::descriptor = {sizeof(calx_descriptor),
-                                          0,
-                                          "calx.mesh",
-                                          CALX_GEOMETRY,
-                                          "Mesh",
-                                          "1.0.0",
-                                          "Calx",
-                                          "Apache-2.0",
-                                          "Triangles from an STL file, checked for faults.",
-                                          0,
-                                          fields,
-                                          sizeof fields / sizeof fields[0],
-                                          0,
-                                          extra_schema};
+const calx_descriptor Mesh::descriptor =
+    calx::shape::descriptor("calx.mesh", "Mesh", "1.0.0", "Calx", "Apache-2.0",
+                            "Triangles from an STL file, checked for faults.", fields, extra_schema);
 
 }  // namespace
 

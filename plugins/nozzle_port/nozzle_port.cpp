@@ -4,7 +4,7 @@
 // Chute and pipe meet, and pipe and nozzle meet, on the plane that halves the angle between their axes (a mitre joint),
 // so that round bores of equal radius fit exactly: on that plane both are the same ellipse, a circle seen from above.
 #include <algorithm>
-#include <calx/plugin.hpp>
+#include <calx/shape.hpp>
 #include <cmath>
 #include <vector>
 
@@ -50,7 +50,7 @@ struct Point {
   double x, y, z;
 };
 
-class NozzlePort : public calx::Instance {
+class NozzlePort : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
 
@@ -83,40 +83,24 @@ class NozzlePort : public calx::Instance {
     slope_y_ = dy / (dz + length);
   }
 
-  const void* get_interface(const char* id) const override {
-    static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-    return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
+  calx_status send(const calx_shape_sink* sink) const override {
+    switch (piece_) {
+      case chute:
+        return send_chute(sink);
+      case pipe:
+        return send_pipe(sink);
+      case nozzle:
+        return send_nozzle(sink);
+      case port:
+        return send_port(sink);
+      case nozzle_gate:
+        return send_gate(sink, parting_);
+      default:
+        return send_gate(sink, parting_ - collar_ - gate_thickness_);
+    }
   }
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host* host,
-                                     const calx_shape_sink* sink) noexcept {
-    calx_status status = CALX_OK;
-    const calx_status mine = calx::guard(host, [&] {
-      const NozzlePort& self = *static_cast<const NozzlePort*>(instance);
-      switch (self.piece_) {
-        case chute:
-          status = self.send_chute(sink);
-          break;
-        case pipe:
-          status = self.send_pipe(sink);
-          break;
-        case nozzle:
-          status = self.send_nozzle(sink);
-          break;
-        case port:
-          status = self.send_port(sink);
-          break;
-        case nozzle_gate:
-          status = self.send_gate(sink, self.parting_);
-          break;
-        default:
-          status = self.send_gate(sink, self.parting_ - self.collar_ - self.gate_thickness_);
-      }
-    });
-    return mine < 0 ? mine : status;
-  }
-
   void check() const {
     const auto fail = [](const std::string& what, double value, const std::string& wanted) {
       throw calx::ConfigError(what + ": " + std::to_string(value) + " m " + wanted);
@@ -142,24 +126,18 @@ class NozzlePort : public calx::Instance {
 
   /// Strips between rings of equal count, upper rings first; a quad with coinciding ends becomes one triangle.
   static calx_status send_rings(const calx_shape_sink* sink, const std::vector<std::vector<Point>>& rings) {
-    std::vector<double> xyz;
+    calx::shape::Triangles all;
     for (const std::vector<Point>& ring : rings)
-      for (const Point& p : ring) {
-        xyz.push_back(p.x);
-        xyz.push_back(p.y);
-        xyz.push_back(p.z);
-      }
+      for (const Point& p : ring) all.corner(p.x, p.y, p.z);
     const uint32_t n = static_cast<uint32_t>(rings[0].size());
-    const auto apart = [&](uint32_t a, uint32_t b) { return std::fabs(xyz[3 * a + 2] - xyz[3 * b + 2]) > 1e-6; };
-    std::vector<uint32_t> index;
+    const auto apart = [&](uint32_t a, uint32_t b) { return std::fabs(all.height(a) - all.height(b)) > 1e-6; };
     for (uint32_t r = 0; r + 1 < rings.size(); ++r)
       for (uint32_t k = 0; k < n; ++k) {
         const uint32_t a = r * n + k, b = r * n + (k + 1) % n, c = b + n, d = a + n;
-        const uint32_t first[] = {a, d, c}, second[] = {a, c, b};
-        if (apart(a, d)) index.insert(index.end(), first, first + 3);
-        if (apart(b, c)) index.insert(index.end(), second, second + 3);
+        if (apart(a, d)) all.triangle(a, d, c);
+        if (apart(b, c)) all.triangle(a, c, b);
       }
-    return sink->triangles(sink, xyz.size() / 3, xyz.data(), index.size() / 3, index.data());
+    return all.send(sink);
   }
 
   calx_status send_chute(const calx_shape_sink* sink) const {
@@ -226,24 +204,13 @@ class NozzlePort : public calx::Instance {
     const double tip = bottom_.y + bore_ - gate_gap_ - retracted_, back = tip - gate_length_;
     const double y[4] = {back, tip, tip - gate_thickness_, back};  // below rear, below tip, above tip, above rear
     const double zs[4] = {z, z, z + gate_thickness_, z + gate_thickness_};
-    double xyz[24];
-    for (int k = 0; k < 8; ++k) {
-      xyz[3 * k] = bottom_.x + (k < 4 ? -gate_half_width_ : gate_half_width_);
-      xyz[3 * k + 1] = y[k % 4];
-      xyz[3 * k + 2] = zs[k % 4];
-    }
-    std::vector<uint32_t> index;
-    for (uint32_t k = 0; k < 4; ++k) {
-      const uint32_t a = k, b = (k + 1) % 4, two[] = {a, b, b + 4, a, b + 4, a + 4};
-      index.insert(index.end(), two, two + 6);
-    }
+    calx::shape::Triangles all;
+    for (int k = 0; k < 8; ++k)
+      all.corner(bottom_.x + (k < 4 ? -gate_half_width_ : gate_half_width_), y[k % 4], zs[k % 4]);
+    for (uint32_t k = 0; k < 4; ++k) all.quad(k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4);
     const uint32_t ends[] = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6};
-    for (uint32_t k = 0; k < 12; k += 3) {
-      index.push_back(ends[k]);
-      index.push_back(ends[k + 2]);
-      index.push_back(ends[k + 1]);
-    }
-    return sink->triangles(sink, 8, xyz, index.size() / 3, index.data());
+    for (uint32_t k = 0; k < 12; k += 3) all.triangle(ends[k], ends[k + 2], ends[k + 1]);
+    return all.send(sink);
   }
 
   int piece_, facets_;
@@ -253,21 +220,9 @@ class NozzlePort : public calx::Instance {
   Point top_, bottom_;
 };
 
-const calx_descriptor NozzlePort::descriptor = {
-    sizeof(calx_descriptor),
-    0,
-    "calx.nozzle-port",
-    CALX_GEOMETRY,
-    "Nozzle and port",
-    "1.0.0",
-    "Calx",
-    "Apache-2.0",
-    "Outlet chute, inclined pipe, nozzle, port with collar, and their two slide gates, one piece a part.",
-    0,
-    fields,
-    sizeof fields / sizeof fields[0],
-    0,
-    0};
+const calx_descriptor NozzlePort::descriptor = calx::shape::descriptor(
+    "calx.nozzle-port", "Nozzle and port", "1.0.0", "Calx", "Apache-2.0",
+    "Outlet chute, inclined pipe, nozzle, port with collar, and their two slide gates, one piece a part.", fields);
 
 }  // namespace
 

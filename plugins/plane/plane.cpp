@@ -1,7 +1,6 @@
 // plane.cpp: a flat rectangle, calx.plane. Cut into more triangles it must act as the same wall; tests use that.
-#include <calx/plugin.hpp>
+#include <calx/shape.hpp>
 #include <cmath>
-#include <vector>
 
 namespace {
 
@@ -18,7 +17,7 @@ const calx_field fields[] = {
     {"divisions", "1", "cuts along each side: n gives 2 n^2 triangles of the same wall", 1, 1000, 1, CALX_FIELD_INTEGER,
      0}};
 
-class Plane : public calx::Instance {
+class Plane : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
 
@@ -38,54 +37,31 @@ class Plane : public calx::Instance {
     for (int k = 0; k < 3; ++k) v_[k] = n[(k + 1) % 3] * u_[(k + 2) % 3] - n[(k + 2) % 3] * u_[(k + 1) % 3];
   }
 
-  const void* get_interface(const char* id) const override {
-    static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-    return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
+  calx_status send(const calx_shape_sink* sink) const override {
+    const uint32_t n = divisions_;
+    calx::shape::Triangles all;
+    double x[3];
+    for (uint32_t j = 0; j <= n; ++j)
+      for (uint32_t i = 0; i <= n; ++i) {
+        for (int k = 0; k < 3; ++k)
+          x[k] = point_[k] + half_u_ * (2.0 * i / n - 1) * u_[k] + half_v_ * (2.0 * j / n - 1) * v_[k];
+        all.corner(x[0], x[1], x[2]);
+      }
+    for (uint32_t j = 0; j < n; ++j)
+      for (uint32_t i = 0; i < n; ++i) {
+        const uint32_t a = j * (n + 1) + i;
+        all.quad(a, a + 1, a + n + 2, a + n + 1);
+      }
+    return all.send(sink);
   }
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host* host,
-                                     const calx_shape_sink* sink) noexcept {
-    calx_status status = CALX_OK;
-    const calx_status mine = calx::guard(host, [&] { status = static_cast<const Plane*>(instance)->send(sink); });
-    return mine < 0 ? mine : status;
-  }
-
-  calx_status send(const calx_shape_sink* sink) const {
-    const uint32_t n = divisions_;
-    std::vector<double> xyz;
-    std::vector<uint32_t> index;
-    for (uint32_t j = 0; j <= n; ++j)
-      for (uint32_t i = 0; i <= n; ++i)
-        for (int k = 0; k < 3; ++k)
-          xyz.push_back(point_[k] + half_u_ * (2.0 * i / n - 1) * u_[k] + half_v_ * (2.0 * j / n - 1) * v_[k]);
-    for (uint32_t j = 0; j < n; ++j)
-      for (uint32_t i = 0; i < n; ++i) {
-        const uint32_t a = j * (n + 1) + i, b = a + 1, c = a + n + 2, d = a + n + 1;
-        const uint32_t two[] = {a, b, c, a, c, d};
-        index.insert(index.end(), two, two + 6);
-      }
-    return sink->triangles(sink, xyz.size() / 3, xyz.data(), index.size() / 3, index.data());
-  }
-
   double point_[3], u_[3], v_[3], half_u_, half_v_;
   uint32_t divisions_;
 };
 
-const calx_descriptor Plane::descriptor = {sizeof(calx_descriptor),
-                                           0,
-                                           "calx.plane",
-                                           CALX_GEOMETRY,
-                                           "Plane",
-                                           "1.0.0",
-                                           "Calx",
-                                           "Apache-2.0",
-                                           "A flat rectangular wall.",
-                                           0,
-                                           fields,
-                                           sizeof fields / sizeof fields[0],
-                                           0,
-                                           0};
+const calx_descriptor Plane::descriptor =
+    calx::shape::descriptor("calx.plane", "Plane", "1.0.0", "Calx", "Apache-2.0", "A flat rectangular wall.", fields);
 
 }  // namespace
 

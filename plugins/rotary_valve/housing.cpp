@@ -29,8 +29,7 @@ const calx_field fields[] = {
 
 RotorHousing::RotorHousing(const calx_host*, const calx_config& c) {
   const auto get = [&](const char* name) { return calx::parameter(descriptor, c, name); };
-  const char* const names[] = {"position_x", "position_y", "position_z"};
-  for (int k = 0; k < 3; ++k) position_[k] = get(names[k]);
+  calx::shape::read_vector(descriptor, c, "position", position_);
   bore_ = get("bore_radius");
   length_ = get("length");
   port_length_ = get("port_length");
@@ -47,18 +46,6 @@ RotorHousing::RotorHousing(const calx_host*, const calx_config& c) {
     throw calx::ConfigError(
         "edge_size: edges of " + std::to_string(edge_) +
         " m leave no closed arc between the ports; give smaller edges or a smaller port_half_angle");
-}
-
-const void* RotorHousing::get_interface(const char* id) const {
-  static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-  return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
-}
-
-calx_status CALX_CALL RotorHousing::build(const calx_instance* instance, const calx_host* host,
-                                          const calx_shape_sink* sink) noexcept {
-  calx_status status = CALX_OK;
-  const calx_status mine = calx::guard(host, [&] { status = static_cast<const RotorHousing*>(instance)->send(sink); });
-  return mine < 0 ? mine : status;
 }
 
 /// The edge on the right of the inlet as points (x, z) from the vertical port wall down to the bore.
@@ -131,17 +118,6 @@ calx_status RotorHousing::send(const calx_shape_sink* sink) const {
   return CALX_OK;
 }
 
-const calx_descriptor RotorHousing::descriptor = {sizeof(calx_descriptor),
-                                                  0,
-                                                  "calx.rotary-housing",
-                                                  CALX_GEOMETRY,
-                                                  "Rotary valve housing",
-                                                  "1.0.0",
-                                                  "Calx",
-                                                  "Apache-2.0",
-                                                  "The housing of a rotary valve: bore with two ports and end plates.",
-                                                  0,
-                                                  fields,
-                                                  sizeof fields / sizeof fields[0],
-                                                  0,
-                                                  0};
+const calx_descriptor RotorHousing::descriptor =
+    calx::shape::descriptor("calx.rotary-housing", "Rotary valve housing", "1.0.0", "Calx", "Apache-2.0",
+                            "The housing of a rotary valve: bore with two ports and end plates.", fields);

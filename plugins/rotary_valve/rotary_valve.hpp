@@ -2,7 +2,7 @@
 // counted from the top towards +x, which is clockwise seen from -y and a positive turn about +y.
 #ifndef ROTARY_VALVE_HPP
 #define ROTARY_VALVE_HPP
-#include <calx/plugin.hpp>
+#include <calx/shape.hpp>
 #include <vector>
 
 /// Triangles of walls parallel to y.
@@ -11,40 +11,33 @@ struct Prism {
   /// Strips between neighbouring points (x, z) of a line and neighbouring levels of y; normals to the left of the line
   /// seen from -y. Coordinates from the origin.
   void add(const std::vector<double>& x_z, const std::vector<double>& levels);
-  calx_status send(const calx_shape_sink* sink) const;
+  calx_status send(const calx_shape_sink* sink) const { return all_.send(sink); }
 
  private:
   const double* origin_;
-  std::vector<double> xyz_;
-  std::vector<uint32_t> index_;
+  calx::shape::Triangles all_;
 };
 
 /// calx.rotary-valve: hub and parallel-sided vanes; open at both ends, where the housing's end plates stand.
-class Rotor : public calx::Instance {
+class Rotor : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
   Rotor(const calx_host* host, const calx_config& config);
-  const void* get_interface(const char* id) const override;
+  calx_status send(const calx_shape_sink* sink) const override;
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host* host,
-                                     const calx_shape_sink* sink) noexcept;
-  calx_status send(const calx_shape_sink* sink) const;
   double position_[3], radius_, hub_, length_, half_vane_, angle_;
   int pockets_;
 };
 
 /// calx.rotary-housing: two closed arcs, two ports with their edges, two end plates.
-class RotorHousing : public calx::Instance {
+class RotorHousing : public calx::shape::Shape {
  public:
   static const calx_descriptor descriptor;
   RotorHousing(const calx_host* host, const calx_config& config);
-  const void* get_interface(const char* id) const override;
+  calx_status send(const calx_shape_sink* sink) const override;
 
  private:
-  static calx_status CALX_CALL build(const calx_instance* instance, const calx_host* host,
-                                     const calx_shape_sink* sink) noexcept;
-  calx_status send(const calx_shape_sink* sink) const;
   std::vector<double> port_edge() const;
   double position_[3], bore_, length_, port_length_, port_half_angle_, edge_;
   int edge_shape_, facets_;

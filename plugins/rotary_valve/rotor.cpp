@@ -35,8 +35,7 @@ void arc(std::vector<double>& x_z, double radius, double from, double to) {
 
 Rotor::Rotor(const calx_host*, const calx_config& c) {
   const auto get = [&](const char* name) { return calx::parameter(descriptor, c, name); };
-  const char* const names[] = {"position_x", "position_y", "position_z"};
-  for (int k = 0; k < 3; ++k) position_[k] = get(names[k]);
+  calx::shape::read_vector(descriptor, c, "position", position_);
   pockets_ = static_cast<int>(get("pockets"));
   radius_ = get("outer_radius");
   hub_ = get("hub_radius");
@@ -50,18 +49,6 @@ Rotor::Rotor(const calx_host*, const calx_config& c) {
     throw calx::ConfigError("vane_thickness: " + std::to_string(pockets_) + " vanes of " +
                             std::to_string(2 * half_vane_) + " m leave no pocket at the hub; give less than " +
                             std::to_string(2 * hub_ * std::sin(pi / pockets_)) + " m");
-}
-
-const void* Rotor::get_interface(const char* id) const {
-  static const calx_geometry table = {sizeof(calx_geometry), CALX_ABI_DRAFT, &build};
-  return std::strcmp(id, CALX_GEOMETRY) == 0 ? &table : 0;
-}
-
-calx_status CALX_CALL Rotor::build(const calx_instance* instance, const calx_host* host,
-                                   const calx_shape_sink* sink) noexcept {
-  calx_status status = CALX_OK;
-  const calx_status mine = calx::guard(host, [&] { status = static_cast<const Rotor*>(instance)->send(sink); });
-  return mine < 0 ? mine : status;
 }
 
 calx_status Rotor::send(const calx_shape_sink* sink) const {
@@ -87,17 +74,6 @@ calx_status Rotor::send(const calx_shape_sink* sink) const {
   return prism.send(sink);
 }
 
-const calx_descriptor Rotor::descriptor = {sizeof(calx_descriptor),
-                                           0,
-                                           "calx.rotary-valve",
-                                           CALX_GEOMETRY,
-                                           "Rotary valve rotor",
-                                           "1.0.0",
-                                           "Calx",
-                                           "Apache-2.0",
-                                           "The rotor of a rotary valve: hub and parallel-sided vanes.",
-                                           0,
-                                           fields,
-                                           sizeof fields / sizeof fields[0],
-                                           0,
-                                           0};
+const calx_descriptor Rotor::descriptor =
+    calx::shape::descriptor("calx.rotary-valve", "Rotary valve rotor", "1.0.0", "Calx", "Apache-2.0",
+                            "The rotor of a rotary valve: hub and parallel-sided vanes.", fields);
