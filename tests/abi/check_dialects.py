@@ -13,7 +13,9 @@ import tempfile
 root = sys.argv[1]
 include = os.path.join(root, "abi", "include")
 headers = sorted(os.path.relpath(h, include) for h in glob.glob(include + "/calx/*.h"))
+# Folder and symbol; a plugin may be deleted.
 laws = {"hertz_mindlin": "hertz_mindlin", "linear": "linear_spring", "epam": "epam_n15"}
+laws = {folder: symbol for folder, symbol in laws.items() if os.path.exists(f"{root}/plugins/{folder}")}
 
 tables = "".join(f"#include <{h}>\n" for h in headers + headers)  # twice: the guards
 law = ""

@@ -3,7 +3,7 @@ import json
 import re
 import unittest
 
-from calx import PLUGIN, PLUGINS, USAGE, CalxTest, cup
+from calx import PLUGIN, PLUGINS, USAGE, CalxTest, cup, needs
 
 try:
     import jsonschema
@@ -152,7 +152,7 @@ class CommandLine(CalxTest):
         for path in PLUGINS.glob("*.plugin.json"):
             known.update({p["id"]: p["kind"] for p in json.loads(path.read_text())["plugins"]})
         self.assertEqual(rows, known)
-        self.assertIn("calx.epam", rows)
+        self.assertIn("calx.hertz-mindlin", rows)
         self.assertIn(str(PLUGINS.resolve()), result.out)
 
     def test_plugin_describe_and_schema(self):
@@ -169,13 +169,17 @@ class CommandLine(CalxTest):
                 self.assertEqual(schema["type"], "object")
                 self.assertIs(schema["additionalProperties"], False)
                 self.assertIn(name, schema["title"])
+        for command in ("describe", "schema"):
+            self.fails(PLUGIN, r"no plugin calx\.hertz-midlin found in /\S+", r'did you mean "calx\.hertz-mindlin"\?',
+                       result=self.calx("plugin", command, "calx.hertz-midlin"))
+
+    def test_plugin_with_choices(self):
+        needs("calx.epam")
         schema = json.loads(self.calx("plugin", "schema", "calx.epam").out)["properties"]
         text = self.calx("plugin", "describe", "calx.epam").out
         self.assertRegex(text, r"(?m)^  plasticity +1 +0 \.\. 0\.99 +required +lambda = 1 - k1/k2")
         self.assertEqual(schema["exponent"]["enum"], ["1", "1.5"])
         self.assertEqual(schema["plasticity"]["anyOf"][0], {"type": "number", "minimum": 0, "maximum": 0.99})
-        for command in ("describe", "schema"):
-            self.fails(PLUGIN, r"no plugin calx\.epm found in /\S+", r'did you mean "calx\.epam"\?', result=self.calx("plugin", command, "calx.epm"))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@ import json
 import shutil
 import unittest
 
-from calx import EPAM, CalxTest, busy, cup, differences
+from calx import EPAM, CalxTest, busy, cup, differences, needs
 
 
 class Repeat(CalxTest):
@@ -25,6 +25,7 @@ class Repeat(CalxTest):
             self.assertEqual((self.dir / "first" / name).read_bytes(), (self.dir / "second" / name).read_bytes())
 
     def test_threads(self):
+        needs("calx.epam")
         # More particles than one chunk of work, in motion and in contact.
         case = cup({"/sources/0/count": 900, "/sources/0/region": {"box": {"min": [-0.019, -0.019, 0.002], "max": [0.019, 0.019, 0.075]}},
                     "/shapes/ball/sphere/radius": 0.0017, "/time/end": 0.03, "/output": {}})
