@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
-# Second compiler: engine and plugins, warnings as errors; tests of laws, boundary and base.
-source "$(dirname "$0")/../common.sh"
-build_and_test clang '^(base|abi|plugins|plugin|compute|step)_'
+# Second compiler, warnings as errors: engine, plugins and program; fast tests of what depends on the compiler.
+source "$(dirname "$0")/common.sh"
+build_and_test clang '^(base|abi|config|plugins|plugin|compute|neighbour)_|^step_(integrate|walls)$'
+ninja -C build/clang -j "$cores" hosts/calx/all
