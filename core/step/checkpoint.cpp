@@ -123,6 +123,8 @@ void Engine::load(const StateReader& in) {
   sphere_wrench_.resize(spheres);
   if (particles.has_clumps) sum_.resize(particles.count());
   results_.resize(pairs_.chunks.size());
+  set_haste();
+  used_.assign(pairs_.chunks.size(), 1);  // not known: the first step looks at every particle
   rebuilds_ = counts[0];
   sorted_at_ = counts[1];
   stale_ = counts[2] != 0;

@@ -31,6 +31,7 @@ Engine::~Engine() = default;
 
 void Engine::prepare(int threads) {
   threads_ = std::max(1, threads);
+  kernels_ = &step_kernels();
   history_ = {};
   for (const LawList* list : laws)
     if (list && list->state_count > history_.columns) history_.columns = list->state_count;
@@ -199,8 +200,16 @@ void Engine::rebuild(double dt, bool reorder) {
   sphere_wrench_.resize(spheres);
   if (particles.has_clumps) sum_.resize(particles.count());
   results_.resize(pairs_.chunks.size());
+  set_haste();
+  used_.assign(pairs_.chunks.size(), 0);
   ++rebuilds_;
   stale_ = count_changed_ = false;
+}
+
+void Engine::set_haste() {
+  haste_.resize(particles.count());
+  for (std::size_t p = 0; p < particles.count(); ++p)
+    haste_[p] = static_cast<float>(1 / (margin_[p] * margin_[p])) * 1.000001f;
 }
 
 void Engine::rebuild_if_stale(double dt) {
@@ -222,7 +231,7 @@ void Engine::begin(double dt) {
 #pragma omp parallel for schedule(static) num_threads(team())
   for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
     drift_verlet(c, dt);
-    guard_pass(c);
+    guard_pass(c, dt);
   }
   for (auto& r : results_) {
     stale_ |= r.stale;
@@ -274,7 +283,7 @@ GuardReport Engine::finish(double t, double dt) {
       } else {
         integrate_euler(c, dt);
       }
-      guard_pass(c);
+      guard_pass(c, dt);
     }
   }
   if (failure) std::rethrow_exception(failure);

@@ -72,7 +72,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
       const Vec3 point = centre + arm;
       const Vec3 wall = part.pose.velocity_at(point);
       const Vec3 v = velocity(a) + cross(spin(a), arm) - wall, spin_relative = spin(a) - part.pose.spin;
-      w.i[n] = sphere;
+      w.wall_sphere[n] = sphere;
       w.wall_part[n] = part_number;
       w.wall_slot[n] = slot0 + static_cast<std::size_t>(slot_of[k]);
       w.wall_arm[n] = arm;
@@ -127,7 +127,7 @@ void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, doubl
     const Vec3 f{block.out(CALX_OUT_FX)[k], block.out(CALX_OUT_FY)[k], block.out(CALX_OUT_FZ)[k]};
     const Vec3 m{block.out(CALX_OUT_MX)[k], block.out(CALX_OUT_MY)[k], block.out(CALX_OUT_MZ)[k]};
     const Vec3 on_i = cross(w.wall_arm[k], f) + m, on_part = cross(w.wall_lever[k], f) + m;
-    Wrench& a = sphere_wrench_[w.i[k]];
+    Wrench& a = sphere_wrench_[w.wall_sphere[k]];
     a.fx += f.x;
     a.fy += f.y;
     a.fz += f.z;

@@ -1,0 +1,343 @@
+// kernels.cpp: compiled once per instruction set, each time with another CALX_KERNELS, the name of the table.
+//
+// Only static functions live here: an inline function that the linker shared with the rest of the program could carry
+// instructions that a lesser processor does not have. Vectors are four doubles wide, the width of half a record.
+#include "step/kernels.hpp"
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+namespace calx {
+namespace {
+
+using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
+using FourMask = long long __attribute__((vector_size(32)));
+
+#define CALX_INLINE static inline __attribute__((always_inline))
+
+CALX_INLINE Four load(const double* p) { return *reinterpret_cast<const Four*>(p); }
+CALX_INLINE void store(double* p, Four v) { *reinterpret_cast<Four*>(p) = v; }
+CALX_INLINE Two load_two(const double* p) { return *reinterpret_cast<const Two*>(p); }
+CALX_INLINE void store_two(double* p, Two v) { *reinterpret_cast<Two*>(p) = v; }
+CALX_INLINE Four all(double x) { return Four{x, x, x, x}; }
+
+CALX_INLINE Four root(Four x) {
+#if defined(__AVX__)
+  return _mm256_sqrt_pd(x);
+#else
+  return Four{__builtin_sqrt(x[0]), __builtin_sqrt(x[1]), __builtin_sqrt(x[2]), __builtin_sqrt(x[3])};
+#endif
+}
+
+/// Bit k: lane k of the mask is set.
+CALX_INLINE unsigned bits_of(FourMask mask) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
+#else
+  return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+#endif
+}
+
+CALX_INLINE Four lesser(Four a, Four b) { return a < b ? a : b; }
+CALX_INLINE Four greater(Four a, Four b) { return a > b ? a : b; }
+
+/// Rows become columns.
+CALX_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
+  const Four t0 = __builtin_shufflevector(a, b, 0, 4, 2, 6), t1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four t2 = __builtin_shufflevector(c, d, 0, 4, 2, 6), t3 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(t0, t2, 0, 1, 4, 5);
+  b = __builtin_shufflevector(t1, t3, 0, 1, 4, 5);
+  c = __builtin_shufflevector(t0, t2, 2, 3, 6, 7);
+  d = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
+}
+
+/// Shortest image of differences along one direction.
+CALX_INLINE Four nearest(Four d, double length) {
+  d = d > all(0.5 * length) ? d - length : d;
+  return d < all(-0.5 * length) ? d + length : d;
+}
+
+CALX_INLINE void nearest(const Wrap& wrap, Four& x, Four& y, Four& z) {
+  if (wrap.periodic[0]) x = nearest(x, wrap.length.x);
+  if (wrap.periodic[1]) y = nearest(y, wrap.length.y);
+  if (wrap.periodic[2]) z = nearest(z, wrap.length.z);
+}
+
+/// Entries between asking for a partner's data and using it.
+constexpr std::size_t kAhead = 64;
+
+template <bool wraps>
+CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
+  const Record* __restrict s = scan.spheres;
+  const std::uint32_t *__restrict pi = scan.i, *__restrict pj = scan.j;
+  std::size_t e = scan.next_entry;
+  const std::size_t last = scan.last_entry;
+  std::uint32_t n = 0, crossed = scan.crossed, started = 0;
+  std::uint32_t ii[4] = {0, 0, 0, 0}, jj[4] = {0, 0, 0, 0};
+  for (; e < last && n <= kBlockRows - 4; e += 4) {
+    const std::size_t left = last - e;
+    const std::uint32_t *gi = pi + e, *gj = pj + e;
+    unsigned valid = 15;
+    if (left < 4) {
+      for (std::size_t q = 0; q < 4; ++q) {
+        const std::size_t from = q < left ? e + q : last - 1;
+        ii[q] = pi[from];
+        jj[q] = pj[from];
+      }
+      gi = ii;
+      gj = jj;
+      valid = (1u << left) - 1;
+    }
+    // Partners lie anywhere: without asking early, time goes by waiting for them.
+    if (left > kAhead + 4)
+      for (std::size_t q = 0; q < 4; ++q) {
+        const char* soon = reinterpret_cast<const char*>(s + pj[e + kAhead + q]);
+        __builtin_prefetch(soon);
+        __builtin_prefetch(soon + 64);
+      }
+    Four d0 = load(&s[gi[0]].x) , d1 = load(&s[gi[1]].x), d2 = load(&s[gi[2]].x), d3 = load(&s[gi[3]].x);
+    Four b0 = load(&s[gj[0]].x), b1 = load(&s[gj[1]].x), b2 = load(&s[gj[2]].x), b3 = load(&s[gj[3]].x);
+    // Lane 3 carries radii: minus for the sum under the difference.
+    const FourMask sign{0, 0, 0, static_cast<long long>(0x8000000000000000ull)};
+    b0 = reinterpret_cast<Four>(reinterpret_cast<FourMask>(b0) ^ sign);
+    b1 = reinterpret_cast<Four>(reinterpret_cast<FourMask>(b1) ^ sign);
+    b2 = reinterpret_cast<Four>(reinterpret_cast<FourMask>(b2) ^ sign);
+    b3 = reinterpret_cast<Four>(reinterpret_cast<FourMask>(b3) ^ sign);
+    d0 -= b0;
+    d1 -= b1;
+    d2 -= b2;
+    d3 -= b3;
+    transpose(d0, d1, d2, d3);
+    if (wraps) nearest(*scan.wrap, d0, d1, d2);
+    const unsigned hits = bits_of(d0 * d0 + d1 * d1 + d2 * d2 < d3 * d3) & valid;
+    for (unsigned q = 0; q < 4; ++q) {
+      block.entry[n] = static_cast<std::uint32_t>(e - scan.first_entry) + q;
+      block.i[n] = gi[q];
+      block.j[n] = gj[q];
+      block.ordinal[n] = crossed;
+      const unsigned hit = hits >> q & 1u;
+      if (q < left && hit != scan.touching[e + q]) {
+        scan.touching[e + q] = static_cast<std::uint8_t>(hit);
+        if (hit) scan.fresh[started++] = n;
+      }
+      n += hit;
+      crossed += gj[q] >= scan.last_sphere;
+    }
+  }
+  scan.next_entry = e;
+  scan.crossed = crossed;
+  scan.started = started;
+  block.count = n;
+  block.repeat_last_row();
+  return e < last;
+}
+
+bool find_pairs(PairScan& scan, PairBlock& block) {
+  return scan.wrap ? find<true>(scan, block) : find<false>(scan, block);
+}
+
+double pair_kinematics(const Record* spheres, const Wrap* wrap, PairBlock& block, const PairColumns& out) {
+  const Record* __restrict s = spheres;
+  Four largest = all(0);
+  for (std::uint32_t k = 0; k < block.count; k += 4) {
+    const Record *a0 = s + block.i[k], *a1 = s + block.i[k + 1], *a2 = s + block.i[k + 2], *a3 = s + block.i[k + 3];
+    const Record *b0 = s + block.j[k], *b1 = s + block.j[k + 1], *b2 = s + block.j[k + 2], *b3 = s + block.j[k + 3];
+    Four x = load(&a0->x), y = load(&a1->x), z = load(&a2->x), ri = load(&a3->x);
+    Four px = load(&b0->x), py = load(&b1->x), pz = load(&b2->x), rj = load(&b3->x);
+    transpose(x, y, z, ri);
+    transpose(px, py, pz, rj);
+    x -= px;
+    y -= py;
+    z -= pz;
+    if (wrap) nearest(*wrap, x, y, z);
+    const Four distance = root(x * x + y * y + z * z);
+    const Four inverse = 1 / distance;
+    x *= inverse;
+    y *= inverse;
+    z *= inverse;
+    const Four overlap = ri + rj - distance;
+    const Four a = ri - 0.5 * overlap, b = rj - 0.5 * overlap;
+
+    Four ux = load(&a0->wx), uy = load(&a1->wx), uz = load(&a2->wx), unused = load(&a3->wx);
+    Four qx = load(&b0->wx), qy = load(&b1->wx), qz = load(&b2->wx), unused_too = load(&b3->wx);
+    transpose(ux, uy, uz, unused);
+    transpose(qx, qy, qz, unused_too);
+    if (out.wx) {
+      store(out.wx + k, ux - qx);
+      store(out.wy + k, uy - qy);
+      store(out.wz + k, uz - qz);
+    }
+    // v_i + w_i x (-a n) - v_j - w_j x (b n) = v_i - v_j - (a w_i + b w_j) x n
+    const Four sx = a * ux + b * qx, sy = a * uy + b * qy, sz = a * uz + b * qz;
+
+    Four vx = load(&a0->vx), vy = load(&a1->vx), vz = load(&a2->vx), mi = load(&a3->vx);
+    Four gx = load(&b0->vx), gy = load(&b1->vx), gz = load(&b2->vx), mj = load(&b3->vx);
+    transpose(vx, vy, vz, mi);
+    transpose(gx, gy, gz, mj);
+    store(out.vx + k, vx - gx - (sy * z - sz * y));
+    store(out.vy + k, vy - gy - (sz * x - sx * z));
+    store(out.vz + k, vz - gz - (sx * y - sy * x));
+    store(out.nx + k, x);
+    store(out.ny + k, y);
+    store(out.nz + k, z);
+    store(out.overlap + k, overlap);
+    const Four r = ri * rj / (ri + rj);
+    store(out.r_eff + k, r);
+    store(out.m_eff + k, mi * mj / (mi + mj));
+    if (out.r_i) {
+      store(out.r_i + k, ri);
+      store(out.r_j + k, rj);
+    }
+    store(block.arm_i + k, a);
+    store(block.arm_j + k, b);
+    largest = greater(0.5 * overlap / r, largest);
+  }
+  double most = largest[0];
+  for (int q = 1; q < 4; ++q) most = largest[q] > most ? largest[q] : most;
+  return most;
+}
+
+CALX_INLINE void add(Wrench& sum, Four a, Two b) {
+  store(&sum.fx, load(&sum.fx) + a);
+  store_two(&sum.ty, load_two(&sum.ty) + b);
+}
+CALX_INLINE void subtract(Wrench& sum, Four a, Two b) {
+  store(&sum.fx, load(&sum.fx) - a);
+  store_two(&sum.ty, load_two(&sum.ty) - b);
+}
+
+void scatter_pairs(const PairBlock& block, const PairSums& out) {
+  Wrench* __restrict sums = out.sums;
+  const std::uint32_t count = block.count;
+  for (std::uint32_t k = 0; k < count; k += 4) {
+    Four fx = load(out.fx + k), fy = load(out.fy + k), fz = load(out.fz + k);
+    const Four nx = load(out.nx + k), ny = load(out.ny + k), nz = load(out.nz + k);
+    const Four mx = load(out.mx + k), my = load(out.my + k), mz = load(out.mz + k);
+    // n x f; the lever arms are -a n and b n.
+    const Four gx = ny * fz - nz * fy, gy = nz * fx - nx * fz, gz = nx * fy - ny * fx;
+    const Four a = load(block.arm_i + k), b = load(block.arm_j + k);
+    const Four iy = my - a * gy, iz = mz - a * gz, jy = my + b * gy, jz = mz + b * gz;
+    Four ix = mx - a * gx, jx = mx + b * gx;
+    const Four i0 = __builtin_shufflevector(iy, iz, 0, 4, 2, 6), i1 = __builtin_shufflevector(iy, iz, 1, 5, 3, 7);
+    const Four j0 = __builtin_shufflevector(jy, jz, 0, 4, 2, 6), j1 = __builtin_shufflevector(jy, jz, 1, 5, 3, 7);
+    Four px = fx, py = fy, pz = fz;
+    transpose(fx, fy, fz, ix);
+    transpose(px, py, pz, jx);
+    const Four on_i[4] = {fx, fy, fz, ix}, on_j[4] = {px, py, pz, jx};
+    const Two turn_i[4] = {__builtin_shufflevector(i0, i0, 0, 1), __builtin_shufflevector(i1, i1, 0, 1),
+                           __builtin_shufflevector(i0, i0, 2, 3), __builtin_shufflevector(i1, i1, 2, 3)};
+    const Two turn_j[4] = {__builtin_shufflevector(j0, j0, 0, 1), __builtin_shufflevector(j1, j1, 0, 1),
+                           __builtin_shufflevector(j0, j0, 2, 3), __builtin_shufflevector(j1, j1, 2, 3)};
+    const std::uint32_t rows = count - k < 4 ? count - k : 4;
+#pragma GCC unroll 4
+    for (std::uint32_t q = 0; q < 4; ++q) {
+      if (q >= rows) break;
+      add(sums[block.i[k + q]], on_i[q], turn_i[q]);
+      const std::uint32_t j = block.j[k + q];
+      if (j < out.last_sphere) {
+        subtract(sums[j], on_j[q], turn_j[q]);
+      } else {
+        const std::uint32_t slot = out.cross[block.ordinal[k + q]];
+        out.slot_used[slot] = 1;
+        store(&out.slot_wrench[slot].fx, -on_j[q]);
+        store_two(&out.slot_wrench[slot].ty, -turn_j[q]);
+      }
+    }
+  }
+}
+
+template <bool turns>
+CALX_INLINE void move(Record* __restrict body, const Wrench* __restrict wrench, std::size_t count,
+                      const double gravity[3], double dt) {
+  const Four zero = all(0), pull{gravity[0] * dt, gravity[1] * dt, gravity[2] * dt, 0};
+  for (std::size_t k = 0; k < count; ++k) {
+    Record& b = body[k];
+    const Wrench& w = wrench[k];
+    const Four force = __builtin_shufflevector(load(&w.fx), zero, 0, 1, 2, 7);
+    const Four v = load(&b.vx) + (all(dt / b.m) * force + pull);
+    store(&b.vx, v);
+    store(&b.x, load(&b.x) + all(dt) * __builtin_shufflevector(v, zero, 0, 1, 2, 7));
+    if (!turns) continue;
+    // Lanes tx, ty, tz from the last four numbers of the wrench.
+    const Four torque = __builtin_shufflevector(load(&w.fz), zero, 1, 2, 3, 7);
+    store(&b.wx, load(&b.wx) + all(dt * b.aux) * torque);
+  }
+}
+
+void move_spheres(Record* body, const Wrench* wrench, std::size_t count, const double gravity[3], double dt) {
+  move<true>(body, wrench, count, gravity, dt);
+}
+void move_clumps(Record* body, const Wrench* wrench, std::size_t count, const double gravity[3], double dt) {
+  move<false>(body, wrench, count, gravity, dt);
+}
+
+template <bool clumps>
+CALX_INLINE void look(const Record* __restrict body, const float* __restrict haste, std::size_t count, Survey& out) {
+  Four lo = all(1e300), hi = all(-1e300), pace = all(0), squares = all(0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Four x = load(&body[k].x), v = load(&body[k].vx), w = load(&body[k].wx);
+    lo = lesser(x, lo);
+    hi = greater(x, hi);
+    Four v2 = v * v;
+    const Four w2 = w * w;
+    squares += v2 + w2;
+    // (|v| + |w| r)^2 <= 2 (v^2 + w^2 r^2), and a fifth for a spin that changes within the step.
+    if (clumps) v2 = 2.4 * (v2 + w2 * all(body[k].r * body[k].r));
+    pace = greater(v2 * all(haste[k]), pace);
+  }
+  store(out.lo, lo);
+  store(out.hi, hi);
+  // Lane by lane the largest, so their sum is not below the largest sum; lane 3 is no velocity.
+  out.pace2 = pace[0] + pace[1] + pace[2];
+  out.squares = squares[0] + squares[1] + squares[2];
+}
+
+void survey(const Record* body, const float* haste, std::size_t count, bool clumps, Survey& out) {
+  if (clumps)
+    look<true>(body, haste, count, out);
+  else
+    look<false>(body, haste, count, out);
+}
+
+/// Turns q by spin w over dt: Cayley's map, exact to third order in w dt, built from + - * / and sqrt.
+CALX_INLINE Quat turned(const Quat& q, const Vec3& w, double dt) {
+  const Quat step{1, 0.5 * dt * w.x, 0.5 * dt * w.y, 0.5 * dt * w.z};
+  return normalized(step * q);
+}
+
+void turn_bodies(std::uint32_t n, TurnTile& t, double dt, double kick, double late_kick) {
+#pragma omp simd
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const Quat q{t.qw[k], t.qx[k], t.qy[k], t.qz[k]};
+    const Vec3 i{t.ix[k], t.iy[k], t.iz[k]}, inverse{1 / i.x, 1 / i.y, 1 / i.z};
+    const Vec3 w{t.wx[k], t.wy[k], t.wz[k]}, torque{t.tx[k], t.ty[k], t.tz[k]};
+    const Vec3 b = rotate(conjugate(q), w);
+    const Vec3 l0 = rotate(q, {i.x * b.x, i.y * b.y, i.z * b.z});
+    const Vec3 l = l0 + kick * torque;
+    const Vec3 b0 = rotate(conjugate(q), l);
+    const Quat half = turned(q, rotate(q, {b0.x * inverse.x, b0.y * inverse.y, b0.z * inverse.z}), 0.5 * dt);
+    const Vec3 b1 = rotate(conjugate(half), l);
+    const Quat now = turned(q, rotate(half, {b1.x * inverse.x, b1.y * inverse.y, b1.z * inverse.z}), dt);
+    const Vec3 l1 = l + late_kick * torque;
+    const Vec3 b2 = rotate(conjugate(now), l1);
+    const Vec3 w1 = rotate(now, {b2.x * inverse.x, b2.y * inverse.y, b2.z * inverse.z});
+    t.before[k] = 0.5 * dot(l0, w);
+    t.after[k] = 0.5 * dot(l1, w1);
+    t.qw[k] = now.w;
+    t.qx[k] = now.x;
+    t.qy[k] = now.y;
+    t.qz[k] = now.z;
+    t.wx[k] = w1.x;
+    t.wy[k] = w1.y;
+    t.wz[k] = w1.z;
+  }
+}
+
+}  // namespace
+
+extern const StepKernels CALX_KERNELS;
+const StepKernels CALX_KERNELS{find_pairs, pair_kinematics, scatter_pairs, move_spheres, move_clumps, survey, turn_bodies};
+
+}  // namespace calx
