@@ -342,7 +342,7 @@ std::string Simulation::digest() const {
   }
   for (std::uint32_t k = 0; k < e.history_columns(); ++k) {
     for (std::size_t row = 0; row < e.pairs().entry_count(); ++row)
-      if (e.pairs().touching[row]) hash.add(&e.pairs().history[k * e.pairs().stride + row], sizeof(double));
+      if (e.pairs().touching[row]) hash.add(&e.pairs().history[row * e.pairs().columns + k], sizeof(double));
     for (std::size_t slot = 0; slot < e.walls().touching.size(); ++slot)
       if (e.walls().touching[slot]) hash.add(&e.walls().history[k * e.walls().stride + slot], sizeof(double));
   }

@@ -46,7 +46,7 @@ void Engine::save(StateWriter& out) const {
   for (std::uint32_t k = 0; k < history_.columns; ++k) {
     column.clear();
     for (std::size_t e = 0; e < pairs_.entry_count(); ++e)
-      if (pairs_.touching[e]) column.push_back(pairs_.history[k * pairs_.stride + e]);
+      if (pairs_.touching[e]) column.push_back(pairs_.history[e * history_.columns + k]);
     out.put("contacts/pairs/history" + std::to_string(k), column.data(), column.size(), "see contacts/layout");
   }
   i.clear();
@@ -139,7 +139,7 @@ void Engine::load(const StateReader& in) {
     if (e == pairs_.entry_count() || pairs_.i[e] != i[c] || pairs_.j[e] != j[c])
       throw Error(Fault::files, "checkpoint: a contact stands between spheres that are far apart; the file is damaged");
     pairs_.touching[e] = 1;
-    for (std::uint32_t k = 0; k < history_.columns; ++k) pairs_.history[k * pairs_.stride + e] = columns[k][c];
+    for (std::uint32_t k = 0; k < history_.columns; ++k) pairs_.history[e * history_.columns + k] = columns[k][c];
   }
   const auto sphere = in.get_u32("contacts/walls/sphere"), part = in.get_u32("contacts/walls/part");
   const auto normals = in.get_doubles("contacts/walls/normal");

@@ -21,6 +21,7 @@ struct PairBlock {
   /// Loops over rows go four at a time.
   void repeat_last_row() {
     for (std::uint32_t k = count; count > 0 && k < count + 3; ++k) {
+      entry[k] = entry[count - 1];
       i[k] = i[count - 1];
       j[k] = j[count - 1];
     }
@@ -76,8 +77,15 @@ struct StepKernels {
   /// Fills the block with the next touching pairs; marks entries that touch and that do not. True while entries remain.
   bool (*find_pairs)(PairScan& scan, PairBlock& block);
   /// Kinematics of block.count rows. The contact point lies in the middle of the overlap; velocity: that of i relative to
-  /// j at the contact point. Returns the largest overlap / (2 r_eff).
-  double (*pair_kinematics)(const Record* spheres, const Wrap* wrap, PairBlock& block, const PairColumns& out);
+  /// j at the contact point. True if some row may have overlap / (2 r_eff) above largest.
+  bool (*pair_kinematics)(const Record* spheres, const Wrap* wrap, PairBlock& block, double largest,
+                          const PairColumns& out);
+  /// Rows of history into columns of the law, and back. history: of the chunk's first entry; width: values of an entry;
+  /// count: columns, kBlockStride apart.
+  void (*read_history)(const double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
+                       double* columns);
+  void (*write_history)(double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
+                        const double* columns);
   /// Adds forces and torques of a block to its spheres.
   void (*scatter_pairs)(const PairBlock& block, const PairSums& out);
   /// Semi-implicit Euler for particles of one sphere, or the translation of clumps; wrench: sums of each particle.

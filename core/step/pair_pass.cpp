@@ -30,8 +30,8 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
     // A new contact starts from what its law asks for.
     for (std::uint32_t k = 0; k < scan.started; ++k) {
       const LawList& list = list_of(scan.fresh[k]);
-      double* history = pairs_.history.data() + chunk.first_entry + w.found.entry[scan.fresh[k]];
-      for (std::uint32_t h = 0; h < list.state_count; ++h) history[h * pairs_.stride] = list.preset[h];
+      double* history = pairs_.history.data() + (chunk.first_entry + w.found.entry[scan.fresh[k]]) * history_.columns;
+      std::copy(list.preset.begin(), list.preset.end(), history);
     }
     if (uniform_) {
       evaluate_pairs(c, w, w.found, law(particles.material[0], particles.material[0]), t, dt);
@@ -79,30 +79,20 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, PairBlock& pairs, const La
                             block.in(CALX_IN_M_EFF),
                             column(CALX_IN_R_I, radii),
                             column(CALX_IN_R_J, radii)};
-  const double share =
-      kernels_->pair_kinematics(particles.spheres(), options.wrap.any() ? &options.wrap : nullptr, pairs, columns);
-  if (share > result.largest_overlap) {
+  const bool record = kernels_->pair_kinematics(particles.spheres(), options.wrap.any() ? &options.wrap : nullptr, pairs,
+                                                result.largest_overlap, columns);
+  for (std::uint32_t k = 0; record && k < n; ++k) {
+    const double share = 0.5 * columns.overlap[k] / columns.r_eff[k];
+    if (share <= result.largest_overlap) continue;
     result.largest_overlap = share;
-    for (std::uint32_t k = 0; k < n; ++k)
-      if (0.5 * columns.overlap[k] / columns.r_eff[k] >= share) {
-        result.overlap_i = pairs.i[k];
-        result.overlap_j = pairs.j[k];
-        break;
-      }
+    result.overlap_i = pairs.i[k];
+    result.overlap_j = pairs.j[k];
   }
 
-  double* __restrict history = pairs_.history.data() + chunk.first_entry;
-  for (std::uint32_t h = 0; h < list.state_count; ++h) {
-    const double* __restrict from = history + h * pairs_.stride;
-    double* __restrict state = block.state(h);
-    for (std::uint32_t k = 0; k < n; ++k) state[k] = from[pairs.entry[k]];
-  }
+  double* history = pairs_.history.data() + chunk.first_entry * history_.columns;
+  kernels_->read_history(history, history_.columns, pairs, list.state_count, block.state(0));
   evaluate_block(list, block, dt, t, options.ledger);
-  for (std::uint32_t h = 0; h < list.state_count; ++h) {
-    double* __restrict to = history + h * pairs_.stride;
-    const double* __restrict state = block.state(h);
-    for (std::uint32_t k = 0; k < n; ++k) to[pairs.entry[k]] = state[k];
-  }
+  kernels_->write_history(history, history_.columns, pairs, list.state_count, block.state(0));
   kernels_->scatter_pairs(pairs, {columns.nx, columns.ny, columns.nz, block.out(CALX_OUT_FX), block.out(CALX_OUT_FY),
                                   block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
                                   block.out(CALX_OUT_MZ), sphere_wrench_.data(), chunk.last_sphere,

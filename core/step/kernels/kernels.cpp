@@ -40,6 +40,47 @@ CALX_INLINE unsigned bits_of(FourMask mask) {
 #endif
 }
 
+using FourIndex = std::uint32_t __attribute__((vector_size(16), aligned(4), may_alias));
+
+CALX_INLINE FourIndex load_index(const std::uint32_t* p) { return *reinterpret_cast<const FourIndex*>(p); }
+CALX_INLINE void store_index(std::uint32_t* p, FourIndex v) { *reinterpret_cast<FourIndex*>(p) = v; }
+
+template <class Mask>
+CALX_INLINE unsigned sign_bits(Mask mask) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#else
+  return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
+#endif
+}
+
+CALX_INLINE unsigned ones(unsigned nibble) { return static_cast<unsigned>(__builtin_popcount(nibble)); }
+
+/// The four flags, each 0 or 1, are the four bits.
+CALX_INLINE bool same_flags(const std::uint8_t* flags, unsigned bits) {
+  static const std::uint32_t spread[16] = {0x0,       0x1,       0x100,     0x101,     0x10000,   0x10001,
+                                           0x10100,   0x10101,   0x1000000, 0x1000001, 0x1000100, 0x1000101,
+                                           0x1010000, 0x1010001, 0x1010100, 0x1010101};
+  std::uint32_t four;
+  __builtin_memcpy(&four, flags, 4);
+  return four == spread[bits];
+}
+
+/// The lanes whose bit is set, moved to the front; what follows them means nothing.
+CALX_INLINE FourIndex pick(FourIndex v, unsigned bits) {
+  static const unsigned char lanes[16][4] = {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3},
+                                             {2, 0, 1, 3}, {0, 2, 1, 3}, {1, 2, 0, 3}, {0, 1, 2, 3},
+                                             {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
+                                             {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+#if defined(__AVX2__)
+  const __m128i order = _mm_cvtepu8_epi32(_mm_loadu_si32(lanes[bits]));
+  return reinterpret_cast<FourIndex>(_mm_permutevar_ps(reinterpret_cast<__m128>(v), order));
+#else
+  const unsigned char* from = lanes[bits];
+  return FourIndex{v[from[0]], v[from[1]], v[from[2]], v[from[3]]};
+#endif
+}
+
 CALX_INLINE Four lesser(Four a, Four b) { return a < b ? a : b; }
 CALX_INLINE Four greater(Four a, Four b) { return a > b ? a : b; }
 
@@ -75,6 +116,7 @@ CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
   std::size_t e = scan.next_entry;
   const std::size_t last = scan.last_entry;
   std::uint32_t n = 0, crossed = scan.crossed, started = 0;
+  const FourIndex first_row{0, 1, 2, 3};
   std::uint32_t ii[4] = {0, 0, 0, 0}, jj[4] = {0, 0, 0, 0};
   for (; e < last && n <= kBlockRows - 4; e += 4) {
     const std::size_t left = last - e;
@@ -112,19 +154,26 @@ CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
     transpose(d0, d1, d2, d3);
     if (wraps) nearest(*scan.wrap, d0, d1, d2);
     const unsigned hits = bits_of(d0 * d0 + d1 * d1 + d2 * d2 < d3 * d3) & valid;
-    for (unsigned q = 0; q < 4; ++q) {
-      block.entry[n] = static_cast<std::uint32_t>(e - scan.first_entry) + q;
-      block.i[n] = gi[q];
-      block.j[n] = gj[q];
-      block.ordinal[n] = crossed;
-      const unsigned hit = hits >> q & 1u;
-      if (q < left && hit != scan.touching[e + q]) {
-        scan.touching[e + q] = static_cast<std::uint8_t>(hit);
-        if (hit) scan.fresh[started++] = n;
+    // A contact that ends is forgotten; one that begins is named to the caller.
+    if (left < 4 || !same_flags(scan.touching + e, hits))
+      for (unsigned q = 0; q < 4 && q < left; ++q) {
+        const unsigned hit = hits >> q & 1u;
+        if (hit != scan.touching[e + q]) {
+          scan.touching[e + q] = static_cast<std::uint8_t>(hit);
+          if (hit) scan.fresh[started++] = n + ones(hits & ((1u << q) - 1));
+        }
       }
-      n += hit;
-      crossed += gj[q] >= scan.last_sphere;
-    }
+    const FourIndex vi = load_index(gi), vj = load_index(gj);
+    const FourIndex row = first_row + static_cast<std::uint32_t>(e - scan.first_entry);
+    const unsigned leaving = sign_bits(vj >= scan.last_sphere) & valid;
+    FourIndex number{crossed, crossed, crossed, crossed};
+    if (leaving) number += FourIndex{0, leaving & 1u, ones(leaving & 3u), ones(leaving & 7u)};
+    store_index(block.entry + n, pick(row, hits));
+    store_index(block.i + n, pick(vi, hits));
+    store_index(block.j + n, pick(vj, hits));
+    store_index(block.ordinal + n, pick(number, hits));
+    n += ones(hits);
+    crossed += ones(leaving);
   }
   scan.next_entry = e;
   scan.crossed = crossed;
@@ -138,9 +187,9 @@ bool find_pairs(PairScan& scan, PairBlock& block) {
   return scan.wrap ? find<true>(scan, block) : find<false>(scan, block);
 }
 
-double pair_kinematics(const Record* spheres, const Wrap* wrap, PairBlock& block, const PairColumns& out) {
+bool pair_kinematics(const Record* spheres, const Wrap* wrap, PairBlock& block, double largest, const PairColumns& out) {
   const Record* __restrict s = spheres;
-  Four largest = all(0);
+  unsigned above = 0;
   for (std::uint32_t k = 0; k < block.count; k += 4) {
     const Record *a0 = s + block.i[k], *a1 = s + block.i[k + 1], *a2 = s + block.i[k + 2], *a3 = s + block.i[k + 3];
     const Record *b0 = s + block.j[k], *b1 = s + block.j[k + 1], *b2 = s + block.j[k + 2], *b3 = s + block.j[k + 3];
@@ -192,11 +241,66 @@ double pair_kinematics(const Record* spheres, const Wrap* wrap, PairBlock& block
     }
     store(block.arm_i + k, a);
     store(block.arm_j + k, b);
-    largest = greater(0.5 * overlap / r, largest);
+    above |= bits_of(0.5 * overlap > largest * r);
   }
-  double most = largest[0];
-  for (int q = 1; q < 4; ++q) most = largest[q] > most ? largest[q] : most;
-  return most;
+  return above != 0;
+}
+
+void read_history(const double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
+                  double* columns) {
+  for (std::uint32_t k = 0; k < block.count; k += 4) {
+    const double *r0 = history + std::size_t(block.entry[k]) * width,
+                 *r1 = history + std::size_t(block.entry[k + 1]) * width,
+                 *r2 = history + std::size_t(block.entry[k + 2]) * width,
+                 *r3 = history + std::size_t(block.entry[k + 3]) * width;
+    double* to = columns + k;
+    for (std::uint32_t h = 0; h < count; h += 4, to += 4 * kBlockStride) {
+      Four a = load(r0 + h), b = load(r1 + h), c = load(r2 + h), d = load(r3 + h);
+      transpose(a, b, c, d);
+      store(to, a);
+      if (h + 1 < count) store(to + kBlockStride, b);
+      if (h + 2 < count) store(to + 2 * kBlockStride, c);
+      if (h + 3 < count) store(to + 3 * kBlockStride, d);
+    }
+  }
+}
+
+/// The first count values of a, at most four.
+CALX_INLINE void store_first(double* p, Four a, std::uint32_t count) {
+  if (count > 3) {
+    store(p, a);
+    return;
+  }
+  if (count == 1) {
+    p[0] = a[0];
+    return;
+  }
+  store_two(p, __builtin_shufflevector(a, a, 0, 1));
+  if (count == 3) p[2] = a[2];
+}
+
+void write_history(double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
+                   const double* columns) {
+  const Four zero = all(0);
+  for (std::uint32_t k = 0; k < block.count; k += 4) {
+    const std::uint32_t rows = block.count - k;
+    double* const r0 = history + std::size_t(block.entry[k]) * width;
+    double* const r1 = history + std::size_t(block.entry[k + 1]) * width;
+    double* const r2 = history + std::size_t(block.entry[k + 2]) * width;
+    double* const r3 = history + std::size_t(block.entry[k + 3]) * width;
+    const double* from = columns + k;
+    for (std::uint32_t h = 0; h < count; h += 4, from += 4 * kBlockStride) {
+      const std::uint32_t left = count - h;
+      Four a = load(from), b = left > 1 ? load(from + kBlockStride) : zero,
+           c = left > 2 ? load(from + 2 * kBlockStride) : zero, d = left > 3 ? load(from + 3 * kBlockStride) : zero;
+      transpose(a, b, c, d);
+      // Rows beyond the count repeat the last one: they must not write over it.
+      store_first(r0 + h, a, left);
+      if (rows > 1) store_first(r1 + h, b, left);
+      if (rows > 2) store_first(r2 + h, c, left);
+      if (rows > 3) store_first(r3 + h, d, left);
+    }
+  }
 }
 
 CALX_INLINE void add(Wrench& sum, Four a, Two b) {
@@ -338,6 +442,6 @@ void turn_bodies(std::uint32_t n, TurnTile& t, double dt, double kick, double la
 }  // namespace
 
 extern const StepKernels CALX_KERNELS;
-const StepKernels CALX_KERNELS{find_pairs, pair_kinematics, scatter_pairs, move_spheres, move_clumps, survey, turn_bodies};
+const StepKernels CALX_KERNELS{find_pairs, pair_kinematics, read_history, write_history, scatter_pairs, move_spheres, move_clumps, survey, turn_bodies};
 
 }  // namespace calx
