@@ -33,6 +33,9 @@ struct PairScan {
   const Record* spheres;
   const std::uint32_t *i, *j;
   std::uint8_t* touching;
+  const double* history;  // of entry 0
+  std::size_t width;      // values of an entry
+  const Wrench* sums;
   const Wrap* wrap;  // null where nothing is periodic
   std::size_t first_entry, next_entry, last_entry;
   std::uint32_t last_sphere;  // of the chunk

@@ -14,6 +14,9 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
   scan.i = pairs_.i.data();
   scan.j = pairs_.j.data();
   scan.touching = pairs_.touching.data();
+  scan.history = pairs_.history.data();
+  scan.width = history_.columns;
+  scan.sums = sphere_wrench_.data();
   scan.wrap = options.wrap.any() ? &options.wrap : nullptr;
   scan.first_entry = scan.next_entry = chunk.first_entry;
   scan.last_entry = chunk.last_entry;

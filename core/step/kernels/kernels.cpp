@@ -133,12 +133,17 @@ CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
       valid = (1u << left) - 1;
     }
     // Partners lie anywhere: without asking early, time goes by waiting for them.
-    if (left > kAhead + 4)
+    if (left > kAhead + 4) {
       for (std::size_t q = 0; q < 4; ++q) {
-        const char* soon = reinterpret_cast<const char*>(s + pj[e + kAhead + q]);
-        __builtin_prefetch(soon);
-        __builtin_prefetch(soon + 64);
+        const std::uint32_t soon = pj[e + kAhead + q];
+        const char* record = reinterpret_cast<const char*>(s + soon);
+        __builtin_prefetch(record);
+        __builtin_prefetch(record + 64);
+        __builtin_prefetch(scan.sums + soon, 1);
       }
+      const double* rows = scan.history + (e + kAhead) * scan.width;
+      for (std::size_t h = 0; h < 4 * scan.width; h += 8) __builtin_prefetch(rows + h, 1);
+    }
     Four d0 = load(&s[gi[0]].x) , d1 = load(&s[gi[1]].x), d2 = load(&s[gi[2]].x), d3 = load(&s[gi[3]].x);
     Four b0 = load(&s[gj[0]].x), b1 = load(&s[gj[1]].x), b2 = load(&s[gj[2]].x), b3 = load(&s[gj[3]].x);
     // Lane 3 carries radii: minus for the sum under the difference.
