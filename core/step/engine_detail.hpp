@@ -18,6 +18,7 @@ struct Engine::Worker {
   // Wall block.
   std::uint32_t wall_count = 0;
   const LawList* wall_law = nullptr;
+  SurfacePoint found_points[kWallContacts];
   std::uint32_t wall_sphere[kBlockRows], wall_part[kBlockRows];
   std::size_t wall_slot[kBlockRows];
   Vec3 wall_arm[kBlockRows], wall_lever[kBlockRows], wall_velocity[kBlockRows], wall_spin[kBlockRows];

@@ -22,7 +22,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
     const Record& a = s[sphere];
     const Vec3 centre = position(a);
     const Vec3 local = part.pose.to_part(centre);
-    SurfacePoint found[kWallContacts];
+    SurfacePoint* found = w.found_points;
     const std::uint32_t first = walls_.first_element[row];
     const std::size_t count = part.surface->closest(local, a.r, walls_.elements.data() + first,
                                                     walls_.first_element[row + 1] - first, found, kWallContacts);
