@@ -131,7 +131,7 @@ StepInputs step_inputs(const World& w) {
   return in;
 }
 
-void build_engine(World& w, int threads) {
+void build_engine(World& w, const SimulationOptions& options) {
   Engine& e = w.engine;
   const CaseSettings& c = w.c;
   e.options.gravity = c.gravity;
@@ -150,7 +150,14 @@ void build_engine(World& w, int threads) {
         {static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get()});
     w.force_instances.push_back(std::move(instance));
   }
-  e.prepare(threads);
+  e.options.mixed = options.mixed;
+  for (const auto& list : w.laws.lists)
+    for (const auto& term : list->terms)
+      if (options.mixed && !term.table->eval_f32)
+        throw Error(Fault::plugin, w.c.file + ": law \"" + term.id +
+                                       "\" has no single-precision block function, which \"--precision mixed\" needs; "
+                                       "run it with \"--precision double\"");
+  e.prepare(options.threads > 0 ? options.threads : omp_get_max_threads());
 }
 
 void build_sensors(World& w) {
@@ -194,7 +201,7 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options)
   const StepInputs in = step_inputs(w);
   w.limits = time_step_limits(in);
   w.dt = choose_step(in, w.limits);
-  build_engine(w, options.threads > 0 ? options.threads : omp_get_max_threads());
+  build_engine(w, options);
   build_sensors(w);
   w.place_parts(0);
   if (!w.c.stages.empty()) w.start_stage(0, 0);

@@ -10,7 +10,7 @@
 namespace calx {
 
 std::string Engine::history_layout() const {
-  std::string text;
+  std::string text = options.mixed ? "mixed precision\n" : "";
   for (const LawList* list : laws) {
     if (!list) continue;
     text += list->label + ":";
@@ -83,7 +83,7 @@ void Engine::save(StateWriter& out) const {
 
 void Engine::load(const StateReader& in) {
   if (in.get_text("contacts/layout") != history_layout())
-    throw Error(Fault::files, "checkpoint: its contact history was written by other laws; in the checkpoint:\n" +
+    throw Error(Fault::files, "checkpoint: its contact history was written by other laws or in another precision; in the checkpoint:\n" +
                                   in.get_text("contacts/layout") + "in this case:\n" + history_layout());
   particles.load(in);
   const auto margins = in.get_doubles("lists/margin"), reference = in.get_doubles("lists/reference"),
@@ -120,9 +120,7 @@ void Engine::load(const StateReader& in) {
   for (std::size_t k = 0; k < spheres; ++k) s[k].x = now[k].x, s[k].y = now[k].y, s[k].z = now[k].z;
   place_parts(0, places_);
   walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
-  sphere_wrench_.resize(spheres);
-  if (particles.has_clumps) sum_.resize(particles.count());
-  results_.resize(pairs_.chunks.size());
+  size_sums();
   set_haste();
   used_.assign(pairs_.chunks.size(), 1);  // not known: the first step looks at every particle
   rebuilds_ = counts[0];

@@ -22,6 +22,8 @@
 
 namespace calx {
 
+struct LeanRecord;
+struct LeanWrench;
 struct PairBlock;
 struct StepKernels;
 
@@ -47,6 +49,7 @@ struct EngineOptions {
   Box domain;
   bool verlet = false;
   bool ledger = false;
+  bool mixed = false;  // pair contacts in single precision, from exact positions
   double skin = 0;             // m, smallest margin of a particle; 0: 0.1 of the smallest radius
   double overlap_limit = 0.5;  // of the radius
 };
@@ -128,8 +131,13 @@ class Engine {
   void check_periodic_lengths() const;
   void place_parts(double dt, std::vector<PartPlace>& places);
   bool parts_left_margin() const;
+  template <class Precision>
   void pair_pass(std::size_t chunk, Worker& worker, double t, double dt);
-  void evaluate_pairs(std::size_t chunk, Worker& worker, PairBlock& pairs, const LawList& list, double t, double dt);
+  template <class Precision>
+  void evaluate_pairs(std::size_t chunk, Worker& worker, const PairBlock& pairs, const LawList& list, double t,
+                      double dt);
+  void thin_pass(std::size_t chunk);
+  void size_sums();
   void wall_pass(std::size_t chunk, Worker& worker, double t, double dt);
   void evaluate_walls(std::size_t chunk, Worker& worker, const LawList& list, double t, double dt);
   void sum_pass(std::size_t chunk);
@@ -152,6 +160,9 @@ class Engine {
   HistorySpec history_;
   Column<Wrench> sphere_wrench_;
   Column<Wrench> sum_;  // per clump, of this step
+  // Mixed precision only: spheres as the pair loop sees them, its sums, and what leaves chunks.
+  Column<LeanRecord> lean_;
+  Column<LeanWrench> lean_wrench_, lean_slot_;
   /// Sums per particle of this step: a particle of one sphere is its sphere.
   Column<Wrench>& sums() { return particles.has_clumps ? sum_ : sphere_wrench_; }
   const StepKernels* kernels_ = nullptr;

@@ -10,8 +10,16 @@ namespace calx {
 
 /// Rows a block of contacts carries beside what a law sees.
 struct Engine::Worker {
-  explicit Worker(std::uint32_t state_columns) : scratch(state_columns) {}
-  BlockScratch scratch;
+  explicit Worker(std::uint32_t state_columns)
+      : in_double{BlockScratch(state_columns), {}, {}}, in_mixed{BlockScratchOf<float>(state_columns), {}, {}} {}
+  /// Of the pair loop in one precision.
+  template <class Real>
+  struct PairWork {
+    BlockScratchOf<Real> scratch;
+    alignas(64) Real arm_i[kColumnStride<Real>], arm_j[kColumnStride<Real>];
+  };
+  PairWork<double> in_double;
+  PairWork<float> in_mixed;
   PairScan scan;
   PairBlock found, picked;  // touching pairs, and those of them that one law list takes
   const LawList* list_of_row[kBlockRows];

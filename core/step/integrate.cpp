@@ -85,6 +85,10 @@ void Engine::sum_pass(std::size_t c) {
     for (std::size_t slot = in.first; slot < in.last; ++slot) {
       if (!pairs_.slot_used[slot]) continue;
       Wrench& a = sphere_wrench_[pairs_.slot_sphere[slot]];
+      if (options.mixed) {
+        kernels_->widen(&lean_slot_[slot], 1, &a);
+        continue;
+      }
       const Wrench& b = pairs_.slot_wrench[slot];
       a.fx += b.fx;
       a.fy += b.fy;
@@ -93,6 +97,9 @@ void Engine::sum_pass(std::size_t c) {
       a.ty += b.ty;
       a.tz += b.tz;
     }
+  if (options.mixed)
+    kernels_->widen(lean_wrench_.data() + chunk.first_sphere, chunk.last_sphere - chunk.first_sphere,
+                    sphere_wrench_.data() + chunk.first_sphere);
   if (!particles.has_clumps) return;
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
     Wrench sum;

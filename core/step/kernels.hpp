@@ -10,14 +10,36 @@
 
 namespace calx {
 
-/// Touching pairs found in a run of list entries, and their lever arms. Rows beyond the count hold copies of a valid row.
+/// A sphere as the pair loop in mixed precision sees it: one cache line. The position is exact, so that overlaps are
+/// differences of doubles; all else has single precision.
+struct alignas(64) LeanRecord {
+  double x, y, z, r;      // m
+  float vx, vy, vz, m;    // m/s, kg
+  float wx, wy, wz, none;  // rad/s
+};
+/// Sums of a sphere's pair contacts in mixed precision.
+struct alignas(32) LeanWrench {
+  float fx = 0, fy = 0, fz = 0, none = 0, tx = 0, ty = 0, tz = 0, none_too = 0;  // N, N m
+};
+
+/// Types of the pair loop in a precision.
+struct InDouble {
+  using Real = double;
+  using Sphere = Record;
+  using Sum = Wrench;
+};
+struct InMixed {
+  using Real = float;
+  using Sphere = LeanRecord;
+  using Sum = LeanWrench;
+};
+
+/// Touching pairs found in a run of list entries. Rows beyond the count hold copies of a valid row.
 struct PairBlock {
   std::uint32_t count = 0;
   alignas(64) std::uint32_t i[kBlockStride], j[kBlockStride];  // sphere ranks
   alignas(64) std::uint32_t entry[kBlockStride];               // relative to the chunk's first entry
   alignas(64) std::uint32_t ordinal[kBlockStride];             // entries of the chunk before this one that leave it
-  alignas(64) double arm_i[kBlockStride], arm_j[kBlockStride];  // m, from each centre to the contact point
-
   /// Loops over rows go four at a time.
   void repeat_last_row() {
     for (std::uint32_t k = count; count > 0 && k < count + 3; ++k) {
@@ -30,12 +52,12 @@ struct PairBlock {
 
 /// A chunk's entries as the search for touching pairs walks over them.
 struct PairScan {
-  const Record* spheres;
+  const void* spheres;  // Sphere of the precision
   const std::uint32_t *i, *j;
   std::uint8_t* touching;
   const double* history;  // of entry 0
   std::size_t width;      // values of an entry
-  const Wrench* sums;
+  const void* sums;       // Sum of the precision
   const Wrap* wrap;  // null where nothing is periodic
   std::size_t first_entry, next_entry, last_entry;
   std::uint32_t last_sphere;  // of the chunk
@@ -44,18 +66,21 @@ struct PairScan {
   std::uint32_t fresh[kBlockRows];
 };
 
-/// What the law sees of a block; null columns are not written.
+/// What the law sees of a block; wx, wy, wz and r_i, r_j are not written where they are null. arm_i, arm_j: m, from each
+/// centre to the contact point.
+template <class Real>
 struct PairColumns {
-  double *overlap, *nx, *ny, *nz, *vx, *vy, *vz, *wx, *wy, *wz, *r_eff, *m_eff, *r_i, *r_j;
+  Real *overlap, *nx, *ny, *nz, *vx, *vy, *vz, *wx, *wy, *wz, *r_eff, *m_eff, *r_i, *r_j, *arm_i, *arm_j;
 };
 
 /// Where the wrenches of a block go: own spheres of the chunk directly, others into slots.
+template <class Precision>
 struct PairSums {
-  const double *nx, *ny, *nz, *fx, *fy, *fz, *mx, *my, *mz;
-  Wrench* sums;
+  const typename Precision::Real *nx, *ny, *nz, *fx, *fy, *fz, *mx, *my, *mz, *arm_i, *arm_j;
+  typename Precision::Sum* sums;
   std::uint32_t last_sphere;
   const std::uint32_t* cross;  // slot of the n-th entry of the chunk that leaves it
-  Wrench* slot_wrench;
+  typename Precision::Sum* slot_wrench;
   std::uint8_t* slot_used;
 };
 
@@ -76,21 +101,33 @@ struct TurnTile {
   alignas(64) double before[kTurnRows], after[kTurnRows];          // energy of rotation, J
 };
 
-struct StepKernels {
+/// Pair loop of one precision.
+template <class Precision>
+struct PairKernels {
+  using Real = typename Precision::Real;
   /// Fills the block with the next touching pairs; marks entries that touch and that do not. True while entries remain.
-  bool (*find_pairs)(PairScan& scan, PairBlock& block);
+  bool (*find)(PairScan& scan, PairBlock& block);
   /// Kinematics of block.count rows. The contact point lies in the middle of the overlap; velocity: that of i relative to
   /// j at the contact point. True if some row may have overlap / (2 r_eff) above largest.
-  bool (*pair_kinematics)(const Record* spheres, const Wrap* wrap, PairBlock& block, double largest,
-                          const PairColumns& out);
+  bool (*kinematics)(const typename Precision::Sphere* spheres, const Wrap* wrap, const PairBlock& block, double largest,
+                     const PairColumns<Real>& out);
   /// Rows of history into columns of the law, and back. history: of the chunk's first entry; width: values of an entry;
-  /// count: columns, kBlockStride apart.
+  /// count: columns, kColumnStride<Real> apart.
   void (*read_history)(const double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
-                       double* columns);
+                       Real* columns);
   void (*write_history)(double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
-                        const double* columns);
+                        const Real* columns);
   /// Adds forces and torques of a block to its spheres.
-  void (*scatter_pairs)(const PairBlock& block, const PairSums& out);
+  void (*scatter)(const PairBlock& block, const PairSums<Precision>& out);
+};
+
+struct StepKernels {
+  PairKernels<InDouble> in_double;
+  PairKernels<InMixed> in_mixed;
+  /// Lean records of spheres.
+  void (*thin)(const Record* spheres, std::size_t count, LeanRecord* out);
+  /// Adds sums in mixed precision to sums in double.
+  void (*widen)(const LeanWrench* from, std::size_t count, Wrench* to);
   /// Semi-implicit Euler for particles of one sphere, or the translation of clumps; wrench: sums of each particle.
   void (*move_spheres)(Record* body, const Wrench* wrench, std::size_t count, const double gravity[3], double dt);
   void (*move_clumps)(Record* body, const Wrench* wrench, std::size_t count, const double gravity[3], double dt);

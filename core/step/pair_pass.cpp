@@ -1,29 +1,42 @@
 // pair_pass.cpp: contacts between spheres: search of touching pairs, block of columns, laws, scatter.
+#include <tuple>
+#include <type_traits>
+
 #include "step/engine_detail.hpp"
 
 namespace calx {
 
+template <class Precision>
 void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
+  constexpr bool mixed = std::is_same_v<Precision, InMixed>;
+  const auto& kernels = [this]() -> const PairKernels<Precision>& {
+    if constexpr (mixed)
+      return kernels_->in_mixed;
+    else
+      return kernels_->in_double;
+  }();
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
   std::fill(sphere_wrench_.begin() + chunk.first_sphere, sphere_wrench_.begin() + chunk.last_sphere, Wrench{});
+  if (mixed)
+    std::fill(lean_wrench_.begin() + chunk.first_sphere, lean_wrench_.begin() + chunk.last_sphere, LeanWrench{});
   std::fill(pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.first_slot),
             pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.last_slot), std::uint8_t{0});
   PairScan& scan = w.scan;
-  scan.spheres = particles.spheres();
+  scan.spheres = mixed ? static_cast<const void*>(lean_.data()) : particles.spheres();
+  scan.sums = mixed ? static_cast<const void*>(lean_wrench_.data()) : sphere_wrench_.data();
   scan.i = pairs_.i.data();
   scan.j = pairs_.j.data();
   scan.touching = pairs_.touching.data();
   scan.history = pairs_.history.data();
   scan.width = history_.columns;
-  scan.sums = sphere_wrench_.data();
   scan.wrap = options.wrap.any() ? &options.wrap : nullptr;
   scan.first_entry = scan.next_entry = chunk.first_entry;
   scan.last_entry = chunk.last_entry;
   scan.last_sphere = chunk.last_sphere;
   scan.crossed = 0;
   for (bool more = true; more;) {
-    more = kernels_->find_pairs(scan, w.found);
+    more = kernels.find(scan, w.found);
     result.touching += w.found.count;
     if (w.found.count == 0) continue;
     auto list_of = [&](std::uint32_t row) -> const LawList& {
@@ -37,7 +50,7 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
       std::copy(list.preset.begin(), list.preset.end(), history);
     }
     if (uniform_) {
-      evaluate_pairs(c, w, w.found, law(particles.material[0], particles.material[0]), t, dt);
+      evaluate_pairs<Precision>(c, w, w.found, law(particles.material[0], particles.material[0]), t, dt);
       continue;
     }
     // Rows of one law list at a time, in the order of the lists.
@@ -55,35 +68,48 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
       picked.count = n;
       if (n == 0) continue;
       picked.repeat_last_row();
-      evaluate_pairs(c, w, picked, *list, t, dt);
+      evaluate_pairs<Precision>(c, w, picked, *list, t, dt);
     }
   }
 }
 
-void Engine::evaluate_pairs(std::size_t c, Worker& w, PairBlock& pairs, const LawList& list, double t, double dt) {
+template <class Precision>
+void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double t,
+                            double dt) {
+  using Real = typename Precision::Real;
+  constexpr bool mixed = std::is_same_v<Precision, InMixed>;
+  const auto& [kernels, work, spheres, sums, slots] = [&] {
+    if constexpr (mixed)
+      return std::tie(kernels_->in_mixed, w.in_mixed, lean_, lean_wrench_, lean_slot_);
+    else
+      return std::tie(kernels_->in_double, w.in_double, particles.has_clumps ? particles.member : particles.body,
+                      sphere_wrench_, pairs_.slot_wrench);
+  }();
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
-  BlockScratch& block = w.scratch;
+  BlockScratchOf<Real>& block = work.scratch;
   const std::uint32_t n = pairs.count;
   block.count = n;
   const bool spin = list.needs & 7u << CALX_IN_WX, radii = list.needs & 3u << CALX_IN_R_I;
   auto column = [&](int k, bool wanted) { return wanted ? block.in(k) : nullptr; };
-  const PairColumns columns{block.in(CALX_IN_OVERLAP),
-                            block.in(CALX_IN_NX),
-                            block.in(CALX_IN_NY),
-                            block.in(CALX_IN_NZ),
-                            block.in(CALX_IN_VX),
-                            block.in(CALX_IN_VY),
-                            block.in(CALX_IN_VZ),
-                            column(CALX_IN_WX, spin),
-                            column(CALX_IN_WY, spin),
-                            column(CALX_IN_WZ, spin),
-                            block.in(CALX_IN_R_EFF),
-                            block.in(CALX_IN_M_EFF),
-                            column(CALX_IN_R_I, radii),
-                            column(CALX_IN_R_J, radii)};
-  const bool record = kernels_->pair_kinematics(particles.spheres(), options.wrap.any() ? &options.wrap : nullptr, pairs,
-                                                result.largest_overlap, columns);
+  const PairColumns<Real> columns{block.in(CALX_IN_OVERLAP),
+                                  block.in(CALX_IN_NX),
+                                  block.in(CALX_IN_NY),
+                                  block.in(CALX_IN_NZ),
+                                  block.in(CALX_IN_VX),
+                                  block.in(CALX_IN_VY),
+                                  block.in(CALX_IN_VZ),
+                                  column(CALX_IN_WX, spin),
+                                  column(CALX_IN_WY, spin),
+                                  column(CALX_IN_WZ, spin),
+                                  block.in(CALX_IN_R_EFF),
+                                  block.in(CALX_IN_M_EFF),
+                                  column(CALX_IN_R_I, radii),
+                                  column(CALX_IN_R_J, radii),
+                                  work.arm_i,
+                                  work.arm_j};
+  const bool record = kernels.kinematics(spheres.data(), options.wrap.any() ? &options.wrap : nullptr, pairs,
+                                         result.largest_overlap, columns);
   for (std::uint32_t k = 0; record && k < n; ++k) {
     const double share = 0.5 * columns.overlap[k] / columns.r_eff[k];
     if (share <= result.largest_overlap) continue;
@@ -93,14 +119,13 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, PairBlock& pairs, const La
   }
 
   double* history = pairs_.history.data() + chunk.first_entry * history_.columns;
-  kernels_->read_history(history, history_.columns, pairs, list.state_count, block.state(0));
+  kernels.read_history(history, history_.columns, pairs, list.state_count, block.state(0));
   evaluate_block(list, block, dt, t, options.ledger);
-  kernels_->write_history(history, history_.columns, pairs, list.state_count, block.state(0));
-  kernels_->scatter_pairs(pairs, {columns.nx, columns.ny, columns.nz, block.out(CALX_OUT_FX), block.out(CALX_OUT_FY),
-                                  block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
-                                  block.out(CALX_OUT_MZ), sphere_wrench_.data(), chunk.last_sphere,
-                                  pairs_.cross.data() + pairs_.first_cross[c], pairs_.slot_wrench.data(),
-                                  pairs_.slot_used.data()});
+  kernels.write_history(history, history_.columns, pairs, list.state_count, block.state(0));
+  kernels.scatter(pairs, {columns.nx, columns.ny, columns.nz, block.out(CALX_OUT_FX), block.out(CALX_OUT_FY),
+                          block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
+                          block.out(CALX_OUT_MZ), work.arm_i, work.arm_j, sums.data(), chunk.last_sphere,
+                          pairs_.cross.data() + pairs_.first_cross[c], slots.data(), pairs_.slot_used.data()});
   if (!options.ledger) return;
   for (std::uint32_t k = 0; k < n; ++k) {
     result.elastic += block.out(CALX_OUT_ELASTIC)[k];
@@ -109,5 +134,8 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, PairBlock& pairs, const La
     result.plastic += block.out(CALX_OUT_PLASTIC)[k];
   }
 }
+
+template void Engine::pair_pass<InDouble>(std::size_t, Worker&, double, double);
+template void Engine::pair_pass<InMixed>(std::size_t, Worker&, double, double);
 
 }  // namespace calx

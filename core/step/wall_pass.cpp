@@ -13,7 +13,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
   ChunkResult& result = results_[c];
   result.load.assign(parts.size(), Wrench{});
   const Record* s = particles.spheres();
-  BlockScratch& block = w.scratch;
+  BlockScratch& block = w.in_double.scratch;
   w.wall_count = 0;
   w.wall_law = nullptr;
   for (std::size_t row = walls_.first_row[c]; row < walls_.first_row[c + 1]; ++row) {
@@ -105,7 +105,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
 
 void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, double t, double dt) {
   ChunkResult& result = results_[c];
-  BlockScratch& block = w.scratch;
+  BlockScratch& block = w.in_double.scratch;
   const std::uint32_t n = w.wall_count;
   w.wall_count = 0;
   block.count = n;

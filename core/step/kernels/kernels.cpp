@@ -13,6 +13,8 @@ namespace {
 
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
+using FourFloat = float __attribute__((vector_size(16), aligned(4), may_alias));
+using EightFloat = float __attribute__((vector_size(32), aligned(4), may_alias));
 using FourMask = long long __attribute__((vector_size(32)));
 
 #define CALX_INLINE static inline __attribute__((always_inline))
@@ -21,6 +23,12 @@ CALX_INLINE Four load(const double* p) { return *reinterpret_cast<const Four*>(p
 CALX_INLINE void store(double* p, Four v) { *reinterpret_cast<Four*>(p) = v; }
 CALX_INLINE Two load_two(const double* p) { return *reinterpret_cast<const Two*>(p); }
 CALX_INLINE void store_two(double* p, Two v) { *reinterpret_cast<Two*>(p) = v; }
+CALX_INLINE FourFloat load(const float* p) { return *reinterpret_cast<const FourFloat*>(p); }
+CALX_INLINE void store(float* p, FourFloat v) { *reinterpret_cast<FourFloat*>(p) = v; }
+CALX_INLINE EightFloat load_eight(const float* p) { return *reinterpret_cast<const EightFloat*>(p); }
+CALX_INLINE void store_eight(float* p, EightFloat v) { *reinterpret_cast<EightFloat*>(p) = v; }
+CALX_INLINE FourFloat narrow(Four v) { return __builtin_convertvector(v, FourFloat); }
+CALX_INLINE Four wide(FourFloat v) { return __builtin_convertvector(v, Four); }
 CALX_INLINE Four all(double x) { return Four{x, x, x, x}; }
 
 CALX_INLINE Four root(Four x) {
@@ -94,6 +102,21 @@ CALX_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
   d = __builtin_shufflevector(t1, t3, 2, 3, 6, 7);
 }
 
+/// The same in each half: columns of the lower halves and of the upper.
+CALX_INLINE void transpose(EightFloat& a, EightFloat& b, EightFloat& c, EightFloat& d) {
+  const EightFloat t0 = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+                   t1 = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
+                   t2 = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
+                   t3 = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  a = __builtin_shufflevector(t0, t2, 0, 1, 8, 9, 4, 5, 12, 13);
+  b = __builtin_shufflevector(t0, t2, 2, 3, 10, 11, 6, 7, 14, 15);
+  c = __builtin_shufflevector(t1, t3, 0, 1, 8, 9, 4, 5, 12, 13);
+  d = __builtin_shufflevector(t1, t3, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+CALX_INLINE FourFloat lower(EightFloat v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
+CALX_INLINE FourFloat upper(EightFloat v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
+CALX_INLINE EightFloat joined(FourFloat a, FourFloat b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+
 /// Shortest image of differences along one direction.
 CALX_INLINE Four nearest(Four d, double length) {
   d = d > all(0.5 * length) ? d - length : d;
@@ -109,9 +132,11 @@ CALX_INLINE void nearest(const Wrap& wrap, Four& x, Four& y, Four& z) {
 /// Entries between asking for a partner's data and using it.
 constexpr std::size_t kAhead = 64;
 
-template <bool wraps>
-CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
-  const Record* __restrict s = scan.spheres;
+template <bool wraps, class Precision>
+CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
+  using Sphere = typename Precision::Sphere;
+  const Sphere* __restrict s = static_cast<const Sphere*>(scan.spheres);
+  const auto* sums = static_cast<const typename Precision::Sum*>(scan.sums);
   const std::uint32_t *__restrict pi = scan.i, *__restrict pj = scan.j;
   std::size_t e = scan.next_entry;
   const std::size_t last = scan.last_entry;
@@ -138,8 +163,8 @@ CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
         const std::uint32_t soon = pj[e + kAhead + q];
         const char* record = reinterpret_cast<const char*>(s + soon);
         __builtin_prefetch(record);
-        __builtin_prefetch(record + 64);
-        __builtin_prefetch(scan.sums + soon, 1);
+        if (sizeof(Sphere) > 64) __builtin_prefetch(record + 64);
+        __builtin_prefetch(sums + soon, 1);
       }
       const double* rows = scan.history + (e + kAhead) * scan.width;
       for (std::size_t h = 0; h < 4 * scan.width; h += 8) __builtin_prefetch(rows + h, 1);
@@ -188,84 +213,124 @@ CALX_INLINE bool find(PairScan& scan, PairBlock& block) {
   return e < last;
 }
 
-bool find_pairs(PairScan& scan, PairBlock& block) {
-  return scan.wrap ? find<true>(scan, block) : find<false>(scan, block);
+template <class Precision>
+bool find(PairScan& scan, PairBlock& block) {
+  return scan.wrap ? find_in<true, Precision>(scan, block) : find_in<false, Precision>(scan, block);
 }
 
-bool pair_kinematics(const Record* spheres, const Wrap* wrap, PairBlock& block, double largest, const PairColumns& out) {
-  const Record* __restrict s = spheres;
+/// Geometry of four pairs, in double whatever the precision: unit vectors towards i, overlaps, distances, radii.
+struct FourPairs {
+  Four nx, ny, nz, overlap, ri, rj;
+};
+
+template <class Sphere>
+CALX_INLINE FourPairs meet(const Sphere* const* a, const Sphere* const* b, const Wrap* wrap) {
+  Four x = load(&a[0]->x), y = load(&a[1]->x), z = load(&a[2]->x), ri = load(&a[3]->x);
+  Four px = load(&b[0]->x), py = load(&b[1]->x), pz = load(&b[2]->x), rj = load(&b[3]->x);
+  transpose(x, y, z, ri);
+  transpose(px, py, pz, rj);
+  x -= px;
+  y -= py;
+  z -= pz;
+  if (wrap) nearest(*wrap, x, y, z);
+  const Four distance = root(x * x + y * y + z * z);
+  const Four inverse = 1 / distance;
+  return {x * inverse, y * inverse, z * inverse, ri + rj - distance, ri, rj};
+}
+
+/// Velocities, spins and masses of four spheres.
+struct FourMotions {
+  Four vx, vy, vz, m, wx, wy, wz;
+};
+struct FourLeanMotions {
+  FourFloat vx, vy, vz, m, wx, wy, wz;
+};
+
+CALX_INLINE FourMotions motions(const Record* const* s) {
+  FourMotions out;
+  out.vx = load(&s[0]->vx), out.vy = load(&s[1]->vx), out.vz = load(&s[2]->vx), out.m = load(&s[3]->vx);
+  transpose(out.vx, out.vy, out.vz, out.m);
+  Four unused = load(&s[3]->wx);
+  out.wx = load(&s[0]->wx), out.wy = load(&s[1]->wx), out.wz = load(&s[2]->wx);
+  transpose(out.wx, out.wy, out.wz, unused);
+  return out;
+}
+CALX_INLINE FourLeanMotions motions(const LeanRecord* const* s) {
+  EightFloat x = load_eight(&s[0]->vx), y = load_eight(&s[1]->vx), z = load_eight(&s[2]->vx),
+             m = load_eight(&s[3]->vx);
+  transpose(x, y, z, m);
+  return {lower(x), lower(y), lower(z), lower(m), upper(x), upper(y), upper(z)};
+}
+
+CALX_INLINE Four in_precision(Four v, const InDouble&) { return v; }
+CALX_INLINE FourFloat in_precision(Four v, const InMixed&) { return narrow(v); }
+
+template <class Precision>
+bool kinematics(const typename Precision::Sphere* spheres, const Wrap* wrap, const PairBlock& block, double largest,
+                const PairColumns<typename Precision::Real>& out) {
+  const Precision precision;
   unsigned above = 0;
   for (std::uint32_t k = 0; k < block.count; k += 4) {
-    const Record *a0 = s + block.i[k], *a1 = s + block.i[k + 1], *a2 = s + block.i[k + 2], *a3 = s + block.i[k + 3];
-    const Record *b0 = s + block.j[k], *b1 = s + block.j[k + 1], *b2 = s + block.j[k + 2], *b3 = s + block.j[k + 3];
-    Four x = load(&a0->x), y = load(&a1->x), z = load(&a2->x), ri = load(&a3->x);
-    Four px = load(&b0->x), py = load(&b1->x), pz = load(&b2->x), rj = load(&b3->x);
-    transpose(x, y, z, ri);
-    transpose(px, py, pz, rj);
-    x -= px;
-    y -= py;
-    z -= pz;
-    if (wrap) nearest(*wrap, x, y, z);
-    const Four distance = root(x * x + y * y + z * z);
-    const Four inverse = 1 / distance;
-    x *= inverse;
-    y *= inverse;
-    z *= inverse;
-    const Four overlap = ri + rj - distance;
-    const Four a = ri - 0.5 * overlap, b = rj - 0.5 * overlap;
-
-    Four ux = load(&a0->wx), uy = load(&a1->wx), uz = load(&a2->wx), unused = load(&a3->wx);
-    Four qx = load(&b0->wx), qy = load(&b1->wx), qz = load(&b2->wx), unused_too = load(&b3->wx);
-    transpose(ux, uy, uz, unused);
-    transpose(qx, qy, qz, unused_too);
-    if (out.wx) {
-      store(out.wx + k, ux - qx);
-      store(out.wy + k, uy - qy);
-      store(out.wz + k, uz - qz);
-    }
-    // v_i + w_i x (-a n) - v_j - w_j x (b n) = v_i - v_j - (a w_i + b w_j) x n
-    const Four sx = a * ux + b * qx, sy = a * uy + b * qy, sz = a * uz + b * qz;
-
-    Four vx = load(&a0->vx), vy = load(&a1->vx), vz = load(&a2->vx), mi = load(&a3->vx);
-    Four gx = load(&b0->vx), gy = load(&b1->vx), gz = load(&b2->vx), mj = load(&b3->vx);
-    transpose(vx, vy, vz, mi);
-    transpose(gx, gy, gz, mj);
-    store(out.vx + k, vx - gx - (sy * z - sz * y));
-    store(out.vy + k, vy - gy - (sz * x - sx * z));
-    store(out.vz + k, vz - gz - (sx * y - sy * x));
+    const typename Precision::Sphere* a[4] = {spheres + block.i[k], spheres + block.i[k + 1], spheres + block.i[k + 2],
+                                              spheres + block.i[k + 3]};
+    const typename Precision::Sphere* b[4] = {spheres + block.j[k], spheres + block.j[k + 1], spheres + block.j[k + 2],
+                                              spheres + block.j[k + 3]};
+    const FourPairs pair = meet(a, b, wrap);
+    const Four r_eff = pair.ri * pair.rj / (pair.ri + pair.rj);
+    above |= bits_of(0.5 * pair.overlap > largest * r_eff);
+    const auto x = in_precision(pair.nx, precision), y = in_precision(pair.ny, precision),
+               z = in_precision(pair.nz, precision);
+    const auto arm_i = in_precision(pair.ri - 0.5 * pair.overlap, precision),
+               arm_j = in_precision(pair.rj - 0.5 * pair.overlap, precision);
     store(out.nx + k, x);
     store(out.ny + k, y);
     store(out.nz + k, z);
-    store(out.overlap + k, overlap);
-    const Four r = ri * rj / (ri + rj);
-    store(out.r_eff + k, r);
-    store(out.m_eff + k, mi * mj / (mi + mj));
+    store(out.overlap + k, in_precision(pair.overlap, precision));
+    store(out.r_eff + k, in_precision(r_eff, precision));
+    store(out.arm_i + k, arm_i);
+    store(out.arm_j + k, arm_j);
     if (out.r_i) {
-      store(out.r_i + k, ri);
-      store(out.r_j + k, rj);
+      store(out.r_i + k, in_precision(pair.ri, precision));
+      store(out.r_j + k, in_precision(pair.rj, precision));
     }
-    store(block.arm_i + k, a);
-    store(block.arm_j + k, b);
-    above |= bits_of(0.5 * overlap > largest * r);
+    const auto i = motions(a), j = motions(b);
+    if (out.wx) {
+      store(out.wx + k, i.wx - j.wx);
+      store(out.wy + k, i.wy - j.wy);
+      store(out.wz + k, i.wz - j.wz);
+    }
+    // v_i + w_i x (-a n) - v_j - w_j x (b n) = v_i - v_j - (a w_i + b w_j) x n
+    const auto sx = arm_i * i.wx + arm_j * j.wx, sy = arm_i * i.wy + arm_j * j.wy, sz = arm_i * i.wz + arm_j * j.wz;
+    store(out.vx + k, i.vx - j.vx - (sy * z - sz * y));
+    store(out.vy + k, i.vy - j.vy - (sz * x - sx * z));
+    store(out.vz + k, i.vz - j.vz - (sx * y - sy * x));
+    store(out.m_eff + k, i.m * j.m / (i.m + j.m));
   }
   return above != 0;
 }
 
+CALX_INLINE void store_columns(double* to, Four v) { store(to, v); }
+CALX_INLINE void store_columns(float* to, Four v) { store(to, narrow(v)); }
+CALX_INLINE Four load_columns(const double* from) { return load(from); }
+CALX_INLINE Four load_columns(const float* from) { return wide(load(from)); }
+
+template <class Precision>
 void read_history(const double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
-                  double* columns) {
+                  typename Precision::Real* columns) {
+  constexpr std::uint32_t stride = kColumnStride<typename Precision::Real>;
   for (std::uint32_t k = 0; k < block.count; k += 4) {
     const double *r0 = history + std::size_t(block.entry[k]) * width,
                  *r1 = history + std::size_t(block.entry[k + 1]) * width,
                  *r2 = history + std::size_t(block.entry[k + 2]) * width,
                  *r3 = history + std::size_t(block.entry[k + 3]) * width;
-    double* to = columns + k;
-    for (std::uint32_t h = 0; h < count; h += 4, to += 4 * kBlockStride) {
+    auto* to = columns + k;
+    for (std::uint32_t h = 0; h < count; h += 4, to += 4 * stride) {
       Four a = load(r0 + h), b = load(r1 + h), c = load(r2 + h), d = load(r3 + h);
       transpose(a, b, c, d);
-      store(to, a);
-      if (h + 1 < count) store(to + kBlockStride, b);
-      if (h + 2 < count) store(to + 2 * kBlockStride, c);
-      if (h + 3 < count) store(to + 3 * kBlockStride, d);
+      store_columns(to, a);
+      if (h + 1 < count) store_columns(to + stride, b);
+      if (h + 2 < count) store_columns(to + 2 * stride, c);
+      if (h + 3 < count) store_columns(to + 3 * stride, d);
     }
   }
 }
@@ -284,8 +349,10 @@ CALX_INLINE void store_first(double* p, Four a, std::uint32_t count) {
   if (count == 3) p[2] = a[2];
 }
 
+template <class Precision>
 void write_history(double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
-                   const double* columns) {
+                   const typename Precision::Real* columns) {
+  constexpr std::uint32_t stride = kColumnStride<typename Precision::Real>;
   const Four zero = all(0);
   for (std::uint32_t k = 0; k < block.count; k += 4) {
     const std::uint32_t rows = block.count - k;
@@ -293,11 +360,12 @@ void write_history(double* history, std::uint32_t width, const PairBlock& block,
     double* const r1 = history + std::size_t(block.entry[k + 1]) * width;
     double* const r2 = history + std::size_t(block.entry[k + 2]) * width;
     double* const r3 = history + std::size_t(block.entry[k + 3]) * width;
-    const double* from = columns + k;
-    for (std::uint32_t h = 0; h < count; h += 4, from += 4 * kBlockStride) {
+    const auto* from = columns + k;
+    for (std::uint32_t h = 0; h < count; h += 4, from += 4 * stride) {
       const std::uint32_t left = count - h;
-      Four a = load(from), b = left > 1 ? load(from + kBlockStride) : zero,
-           c = left > 2 ? load(from + 2 * kBlockStride) : zero, d = left > 3 ? load(from + 3 * kBlockStride) : zero;
+      Four a = load_columns(from), b = left > 1 ? load_columns(from + stride) : zero,
+           c = left > 2 ? load_columns(from + 2 * stride) : zero,
+           d = left > 3 ? load_columns(from + 3 * stride) : zero;
       transpose(a, b, c, d);
       // Rows beyond the count repeat the last one: they must not write over it.
       store_first(r0 + h, a, left);
@@ -308,52 +376,99 @@ void write_history(double* history, std::uint32_t width, const PairBlock& block,
   }
 }
 
-CALX_INLINE void add(Wrench& sum, Four a, Two b) {
-  store(&sum.fx, load(&sum.fx) + a);
-  store_two(&sum.ty, load_two(&sum.ty) + b);
+/// Wrenches of four contacts as rows.
+struct FourWrenches {
+  Four force[4];  // fx, fy, fz, tx
+  Two torque[4];  // ty, tz
+};
+struct FourLeanWrenches {
+  EightFloat row[4];
+};
+
+CALX_INLINE FourWrenches rows(Four fx, Four fy, Four fz, Four tx, Four ty, Four tz) {
+  const Four even = __builtin_shufflevector(ty, tz, 0, 4, 2, 6), odd = __builtin_shufflevector(ty, tz, 1, 5, 3, 7);
+  transpose(fx, fy, fz, tx);
+  return {{fx, fy, fz, tx},
+          {__builtin_shufflevector(even, even, 0, 1), __builtin_shufflevector(odd, odd, 0, 1),
+           __builtin_shufflevector(even, even, 2, 3), __builtin_shufflevector(odd, odd, 2, 3)}};
 }
-CALX_INLINE void subtract(Wrench& sum, Four a, Two b) {
-  store(&sum.fx, load(&sum.fx) - a);
-  store_two(&sum.ty, load_two(&sum.ty) - b);
+CALX_INLINE FourLeanWrenches rows(FourFloat fx, FourFloat fy, FourFloat fz, FourFloat tx, FourFloat ty, FourFloat tz) {
+  EightFloat a = joined(fx, tx), b = joined(fy, ty), c = joined(fz, tz), d{};
+  transpose(a, b, c, d);
+  return {{a, b, c, d}};
 }
 
-void scatter_pairs(const PairBlock& block, const PairSums& out) {
-  Wrench* __restrict sums = out.sums;
+CALX_INLINE void add(Wrench& sum, const FourWrenches& w, std::uint32_t q) {
+  store(&sum.fx, load(&sum.fx) + w.force[q]);
+  store_two(&sum.ty, load_two(&sum.ty) + w.torque[q]);
+}
+CALX_INLINE void subtract(Wrench& sum, const FourWrenches& w, std::uint32_t q) {
+  store(&sum.fx, load(&sum.fx) - w.force[q]);
+  store_two(&sum.ty, load_two(&sum.ty) - w.torque[q]);
+}
+CALX_INLINE void put_negative(Wrench& sum, const FourWrenches& w, std::uint32_t q) {
+  store(&sum.fx, -w.force[q]);
+  store_two(&sum.ty, -w.torque[q]);
+}
+CALX_INLINE void add(LeanWrench& sum, const FourLeanWrenches& w, std::uint32_t q) {
+  store_eight(&sum.fx, load_eight(&sum.fx) + w.row[q]);
+}
+CALX_INLINE void subtract(LeanWrench& sum, const FourLeanWrenches& w, std::uint32_t q) {
+  store_eight(&sum.fx, load_eight(&sum.fx) - w.row[q]);
+}
+CALX_INLINE void put_negative(LeanWrench& sum, const FourLeanWrenches& w, std::uint32_t q) {
+  store_eight(&sum.fx, -w.row[q]);
+}
+
+template <class Precision>
+void scatter(const PairBlock& block, const PairSums<Precision>& out) {
+  auto* __restrict sums = out.sums;
   const std::uint32_t count = block.count;
   for (std::uint32_t k = 0; k < count; k += 4) {
-    Four fx = load(out.fx + k), fy = load(out.fy + k), fz = load(out.fz + k);
-    const Four nx = load(out.nx + k), ny = load(out.ny + k), nz = load(out.nz + k);
-    const Four mx = load(out.mx + k), my = load(out.my + k), mz = load(out.mz + k);
+    const auto fx = load(out.fx + k), fy = load(out.fy + k), fz = load(out.fz + k);
+    const auto nx = load(out.nx + k), ny = load(out.ny + k), nz = load(out.nz + k);
+    const auto mx = load(out.mx + k), my = load(out.my + k), mz = load(out.mz + k);
     // n x f; the lever arms are -a n and b n.
-    const Four gx = ny * fz - nz * fy, gy = nz * fx - nx * fz, gz = nx * fy - ny * fx;
-    const Four a = load(block.arm_i + k), b = load(block.arm_j + k);
-    const Four iy = my - a * gy, iz = mz - a * gz, jy = my + b * gy, jz = mz + b * gz;
-    Four ix = mx - a * gx, jx = mx + b * gx;
-    const Four i0 = __builtin_shufflevector(iy, iz, 0, 4, 2, 6), i1 = __builtin_shufflevector(iy, iz, 1, 5, 3, 7);
-    const Four j0 = __builtin_shufflevector(jy, jz, 0, 4, 2, 6), j1 = __builtin_shufflevector(jy, jz, 1, 5, 3, 7);
-    Four px = fx, py = fy, pz = fz;
-    transpose(fx, fy, fz, ix);
-    transpose(px, py, pz, jx);
-    const Four on_i[4] = {fx, fy, fz, ix}, on_j[4] = {px, py, pz, jx};
-    const Two turn_i[4] = {__builtin_shufflevector(i0, i0, 0, 1), __builtin_shufflevector(i1, i1, 0, 1),
-                           __builtin_shufflevector(i0, i0, 2, 3), __builtin_shufflevector(i1, i1, 2, 3)};
-    const Two turn_j[4] = {__builtin_shufflevector(j0, j0, 0, 1), __builtin_shufflevector(j1, j1, 0, 1),
-                           __builtin_shufflevector(j0, j0, 2, 3), __builtin_shufflevector(j1, j1, 2, 3)};
-    const std::uint32_t rows = count - k < 4 ? count - k : 4;
+    const auto gx = ny * fz - nz * fy, gy = nz * fx - nx * fz, gz = nx * fy - ny * fx;
+    const auto a = load(out.arm_i + k), b = load(out.arm_j + k);
+    const auto on_i = rows(fx, fy, fz, mx - a * gx, my - a * gy, mz - a * gz);
+    const auto on_j = rows(fx, fy, fz, mx + b * gx, my + b * gy, mz + b * gz);
+    const std::uint32_t left = count - k;
 #pragma GCC unroll 4
     for (std::uint32_t q = 0; q < 4; ++q) {
-      if (q >= rows) break;
-      add(sums[block.i[k + q]], on_i[q], turn_i[q]);
+      if (q >= left) break;
+      add(sums[block.i[k + q]], on_i, q);
       const std::uint32_t j = block.j[k + q];
       if (j < out.last_sphere) {
-        subtract(sums[j], on_j[q], turn_j[q]);
+        subtract(sums[j], on_j, q);
       } else {
         const std::uint32_t slot = out.cross[block.ordinal[k + q]];
         out.slot_used[slot] = 1;
-        store(&out.slot_wrench[slot].fx, -on_j[q]);
-        store_two(&out.slot_wrench[slot].ty, -turn_j[q]);
+        put_negative(out.slot_wrench[slot], on_j, q);
       }
     }
+  }
+}
+
+void thin(const Record* __restrict spheres, std::size_t count, LeanRecord* __restrict out) {
+  for (std::size_t k = 0; k < count; ++k) {
+    store(&out[k].x, load(&spheres[k].x));
+    store(&out[k].vx, narrow(load(&spheres[k].vx)));
+    store(&out[k].wx, narrow(load(&spheres[k].wx)));
+  }
+}
+
+void widen(const LeanWrench* __restrict from, std::size_t count, Wrench* __restrict to) {
+  for (std::size_t k = 0; k < count; ++k) {
+    // Three numbers each; the fourth of the force stands before the torque and is zero.
+    const Four force = wide(load(&from[k].fx)), torque = wide(load(&from[k].tx));
+    Wrench& w = to[k];
+    w.fx += force[0];
+    w.fy += force[1];
+    w.fz += force[2];
+    w.tx += torque[0];
+    w.ty += torque[1];
+    w.tz += torque[2];
   }
 }
 
@@ -447,6 +562,15 @@ void turn_bodies(std::uint32_t n, TurnTile& t, double dt, double kick, double la
 }  // namespace
 
 extern const StepKernels CALX_KERNELS;
-const StepKernels CALX_KERNELS{find_pairs, pair_kinematics, read_history, write_history, scatter_pairs, move_spheres, move_clumps, survey, turn_bodies};
+const StepKernels CALX_KERNELS{{find<InDouble>, kinematics<InDouble>, read_history<InDouble>, write_history<InDouble>,
+                                scatter<InDouble>},
+                               {find<InMixed>, kinematics<InMixed>, read_history<InMixed>, write_history<InMixed>,
+                                scatter<InMixed>},
+                               thin,
+                               widen,
+                               move_spheres,
+                               move_clumps,
+                               survey,
+                               turn_bodies};
 
 }  // namespace calx
