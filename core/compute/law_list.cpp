@@ -4,52 +4,75 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <type_traits>
 
 namespace calx {
 
-BlockScratch::BlockScratch(std::uint32_t state_columns) {
-  const std::size_t bytes = sizeof(double) * kBlockStride * (kFixedColumns + state_columns);
+namespace {
+
+void evaluate(const LawTerm& term, calx_block_f64& block) {
+  block.pair = term.pair_row.data();
+  term.table->eval_f64(&block);
+}
+void evaluate(const LawTerm& term, calx_block_f32& block) {
+  block.pair = term.pair_row_f32.data();
+  term.table->eval_f32(&block);
+}
+
+}  // namespace
+
+template <class Real>
+BlockScratchOf<Real>::BlockScratchOf(std::uint32_t state_columns) {
+  const std::size_t bytes = sizeof(Real) * kColumnStride<Real> * (kFixedColumns + state_columns);
   const std::size_t rounded = (bytes + 63) / 64 * 64;
   void* p = std::aligned_alloc(64, rounded);
   if (!p) throw std::bad_alloc();
   // Rows beyond the count hold harmless numbers, so a law may round the count up.
   std::memset(p, 0, rounded);
-  data_.reset(static_cast<double*>(p));
+  data_.reset(static_cast<Real*>(p));
 }
 
-void BlockScratch::Free::operator()(double* p) const { std::free(p); }
+template <class Real>
+void BlockScratchOf<Real>::Free::operator()(Real* p) const {
+  std::free(p);
+}
 
-void evaluate_block(const LawList& list, BlockScratch& scratch, double dt, double time, bool energy) {
+template <class Real>
+void evaluate_block(const LawList& list, BlockScratchOf<Real>& scratch, double dt, double time, bool energy) {
   const std::uint32_t n = scratch.count;
   const int outputs = energy ? CALX_OUT_COUNT : 6;
-  calx_block_f64 block{};
+  std::conditional_t<std::is_same_v<Real, float>, calx_block_f32, calx_block_f64> block{};
   block.struct_size = sizeof block;
   block.count = n;
-  block.stride = kBlockStride;
+  block.stride = kColumnStride<Real>;
   block.dt = dt;
   block.time = time;
   for (std::size_t t = 0; t < list.terms.size(); ++t) {
     const LawTerm& term = list.terms[t];
     for (int k = 0; k < CALX_IN_COUNT; ++k) block.in[k] = (term.table->needs >> k & 1u) != 0 ? scratch.in(k) : nullptr;
     for (int k = 0; k < outputs; ++k) block.out[k] = scratch.out(t == 0 ? k : CALX_OUT_COUNT + k);
-    block.pair = term.pair_row.data();
     block.state = scratch.state(term.state_offset);
     if (term.table->needs >> CALX_IN_FN_BEFORE & 1u) {
-      double* before = scratch.in(CALX_IN_FN_BEFORE);
+      Real* before = scratch.in(CALX_IN_FN_BEFORE);
       for (std::uint32_t i = 0; i < n; ++i)
-        before[i] = t == 0 ? 0.0
+        before[i] = t == 0 ? Real(0)
                            : scratch.out(0)[i] * scratch.in(CALX_IN_NX)[i] +
                                  scratch.out(1)[i] * scratch.in(CALX_IN_NY)[i] +
                                  scratch.out(2)[i] * scratch.in(CALX_IN_NZ)[i];
     }
-    term.table->eval_f64(&block);
+    evaluate(term, block);
     if (t == 0) continue;
     for (int k = 0; k < outputs; ++k) {
-      double* sum = scratch.out(k);
-      const double* add = scratch.out(CALX_OUT_COUNT + k);
+      Real* sum = scratch.out(k);
+      const Real* add = scratch.out(CALX_OUT_COUNT + k);
       for (std::uint32_t i = 0; i < n; ++i) sum[i] += add[i];
     }
   }
 }
+
+template struct BlockScratchOf<double>;
+template struct BlockScratchOf<float>;
+template void evaluate_block<double>(const LawList&, BlockScratchOf<double>&, double, double, bool);
+template void evaluate_block<float>(const LawList&, BlockScratchOf<float>&, double, double, bool);
 
 }  // namespace calx

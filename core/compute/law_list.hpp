@@ -13,13 +13,17 @@ namespace calx {
 /// Rows of one block. Measured elsewhere and here: 64 to 512 are equally fast; all columns stay in the first-level
 /// cache.
 constexpr std::uint32_t kBlockRows = 256;
-/// Rows between two columns: eight more than the block, because columns a power of two apart share cache sets.
-constexpr std::uint32_t kBlockStride = kBlockRows + 8;
+/// Rows between two columns: a cache line more than the block, because columns a power of two apart share cache sets.
+template <class Real>
+constexpr std::uint32_t kColumnStride = kBlockRows + 64 / sizeof(Real);
+/// Of columns in double precision.
+constexpr std::uint32_t kBlockStride = kColumnStride<double>;
 
 struct LawTerm {
   const calx_contact_law* table = nullptr;
   std::string name, id;
   std::vector<double> pair_row;    // for (i, j) in this order
+  std::vector<float> pair_row_f32;
   std::uint32_t state_offset = 0;  // first history column of this term
 };
 
@@ -33,25 +37,28 @@ struct LawList {
   std::vector<std::uint8_t> odd;  // per history column: changes sign when i and j trade places
 };
 
-/// Work space of one thread for one block; about 200 kB with 32 history columns.
-struct BlockScratch {
-  explicit BlockScratch(std::uint32_t state_columns);
-  double* in(int column) { return data_.get() + column * kBlockStride; }
-  double* out(int column) { return data_.get() + (CALX_IN_COUNT + column) * kBlockStride; }
-  double* state(std::uint32_t column) { return data_.get() + (kFixedColumns + column) * kBlockStride; }
+/// Work space of one thread for one block; about 200 kB with 32 history columns of double. Real: double or float.
+template <class Real>
+struct BlockScratchOf {
+  explicit BlockScratchOf(std::uint32_t state_columns);
+  Real* in(int column) { return data_.get() + column * kColumnStride<Real>; }
+  Real* out(int column) { return data_.get() + (CALX_IN_COUNT + column) * kColumnStride<Real>; }
+  Real* state(std::uint32_t column) { return data_.get() + (kFixedColumns + column) * kColumnStride<Real>; }
   /// Rows in use, at most kBlockRows.
   std::uint32_t count = 0;
 
  private:
   static constexpr std::uint32_t kFixedColumns = CALX_IN_COUNT + 2 * CALX_OUT_COUNT;
   struct Free {
-    void operator()(double* p) const;
+    void operator()(Real* p) const;
   };
-  std::unique_ptr<double, Free> data_;
-  friend void evaluate_block(const LawList&, BlockScratch&, double, double, bool);
+  std::unique_ptr<Real, Free> data_;
 };
+using BlockScratch = BlockScratchOf<double>;
 
-/// Evaluates scratch.count rows: reads in and state, writes out (0..5, and 6..9 when energy) and state. [worker]
-void evaluate_block(const LawList& list, BlockScratch& scratch, double dt, double time, bool energy);
+/// Evaluates scratch.count rows: reads in and state, writes out (0..5, and 6..9 when energy) and state. The law's text in
+/// the precision of Real runs. [worker]
+template <class Real>
+void evaluate_block(const LawList& list, BlockScratchOf<Real>& scratch, double dt, double time, bool energy);
 
 }  // namespace calx

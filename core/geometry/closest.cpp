@@ -5,6 +5,7 @@
 // conditions are met with a tolerance, so that rounding never leaves a hole between the regions; what is then found
 // twice lies at the same point and is kept once, the face before the edge before the vertex.
 #include <algorithm>
+#include <type_traits>
 
 #include "geometry/surface_impl.hpp"
 
@@ -27,6 +28,7 @@ bool before(const Found& a, const Found& b) {
 /// The nearest minima found so far, without two at one point.
 class Minima {
  public:
+  static_assert(std::is_trivially_copyable_v<Found>);
   Minima(double tolerance, double crease_cosine) : same2_(16 * tolerance * tolerance), cosine_(crease_cosine) {}
 
   void add(const Found& f) {
@@ -65,7 +67,10 @@ class Minima {
 
  private:
   static constexpr std::size_t capacity = 24;
-  Found found_[capacity];
+  // Not initialised: nearly every call finds none or one, and clearing them all would be most of its work.
+  union {
+    Found found_[capacity];
+  };
   std::size_t count_ = 0;
   double same2_, cosine_;
 };

@@ -230,7 +230,6 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
   old_touching.swap(touching);
   Column<double> old_history;
   old_history.swap(history);
-  const std::size_t old_stride = stride;
 
   row_.assign(n + 1, 0);
   for (const auto& c : chunks)
@@ -242,9 +241,8 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
   i.resize(entries);
   j.resize(entries);
   touching.assign(entries, 0);
-  // Columns end on different cache sets.
-  stride = (entries + 7) / 8 * 8 + 8;
-  history.resize(stride * spec.columns);
+  columns = spec.columns;
+  history.resize(entries * columns + 4);  // rows are read four values at a time
 
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t c = 0; c < chunks.size(); ++c) {
@@ -263,13 +261,13 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
     chunk.first_entry = row_[chunk.first_sphere];
     chunk.last_entry = row_[chunk.last_sphere];
   }
-  if (!old_row.empty()) carry_history(spec, old_rank, old_row, old_j, old_touching, old_history, old_stride);
+  if (!old_row.empty()) carry_history(spec, old_rank, old_row, old_j, old_touching, old_history);
   link_chunks();
 }
 
 void PairList::carry_history(const HistorySpec& spec, const std::uint32_t* old_rank, const Column<std::size_t>& old_row,
                              const Column<std::uint32_t>& old_j, const Column<std::uint8_t>& old_touching,
-                             const Column<double>& old_history, std::size_t old_stride) {
+                             const Column<double>& old_history) {
   const auto old_count = static_cast<std::uint32_t>(old_row.size() - 1);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t c = 0; c < chunks.size(); ++c) {
@@ -283,8 +281,8 @@ void PairList::carry_history(const HistorySpec& spec, const std::uint32_t* old_r
         if (!touching[e]) break;
         const bool turned = a > b;
         for (std::uint32_t k = 0; k < spec.columns; ++k) {
-          const double v = old_history[k * old_stride + o];
-          history[k * stride + e] = turned && spec.odd[k] ? -v : v;
+          const double v = old_history[o * columns + k];
+          history[e * columns + k] = turned && spec.odd[k] ? -v : v;
         }
         break;
       }

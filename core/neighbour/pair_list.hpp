@@ -53,8 +53,8 @@ class PairList {
   std::vector<Chunk> chunks;
   Column<std::uint32_t> i, j;     // sphere ranks
   Column<std::uint8_t> touching;  // at the last evaluation
-  Column<double> history;         // column k of entry e at history[k * stride + e]
-  std::size_t stride = 0;
+  Column<double> history;         // value k of entry e at history[e * columns + k]; a few spare values at the end
+  std::uint32_t columns = 0;
   Column<std::uint32_t> cross;           // slot of the n-th entry of a chunk that leaves it, entries in order
   std::vector<std::size_t> first_cross;  // per chunk, into cross
   Column<std::uint32_t> slot_sphere;     // receiving sphere of each slot
@@ -77,7 +77,7 @@ class PairList {
   void link_chunks();
   void carry_history(const HistorySpec& spec, const std::uint32_t* old_rank, const Column<std::size_t>& old_row,
                      const Column<std::uint32_t>& old_j, const Column<std::uint8_t>& old_touching,
-                     const Column<double>& old_history, std::size_t old_stride);
+                     const Column<double>& old_history);
   Column<std::size_t> row_;  // first entry of each sphere; one more at the end
   std::vector<ChunkWork> work_;
   std::vector<std::uint32_t> cell_of_, cell_start_, binned_;

@@ -84,6 +84,7 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
         term.name = entry.name;
         term.state_offset = list.state_count;
         term.pair_row = law.derive(row[direction], row[1 - direction], made.given, settings.file, entry.pointer);
+        term.pair_row_f32.assign(term.pair_row.begin(), term.pair_row.end());
         for (std::uint32_t k = 0; k < law.state().count; ++k) list.odd.push_back(law.is_odd(k));
         const auto presets = law.new_history();
         list.preset.insert(list.preset.end(), presets.begin(), presets.end());

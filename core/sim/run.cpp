@@ -125,6 +125,7 @@ class Run {
     write_text_atomically(dir_ + "/case.json", resolved_);
     facts_.case_sha256 = sha256(resolved_);
     facts_.started = utc_now();
+    facts_.mixed = o_.simulation.mixed;
     facts_.threads = o_.simulation.threads > 0 ? o_.simulation.threads : omp_get_max_threads();
     const auto& out = sim_.settings().output;
     for (auto& s : sim_.sensors()) {

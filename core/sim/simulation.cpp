@@ -142,7 +142,7 @@ StepInputs step_inputs(const World& w) {
   return in;
 }
 
-void build_engine(World& w, int threads) {
+void build_engine(World& w, const SimulationOptions& options) {
   Engine& e = w.engine;
   const CaseSettings& c = w.c;
   e.options.gravity = c.gravity;
@@ -161,7 +161,14 @@ void build_engine(World& w, int threads) {
         {static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get()});
     w.force_instances.push_back(std::move(instance));
   }
-  e.prepare(threads);
+  e.options.mixed = options.mixed;
+  for (const auto& list : w.laws.lists)
+    for (const auto& term : list->terms)
+      if (options.mixed && !term.table->eval_f32)
+        throw Error(Fault::plugin, w.c.file + ": law \"" + term.id +
+                                       "\" has no single-precision block function, which \"--precision mixed\" needs; "
+                                       "run it with \"--precision double\"");
+  e.prepare(options.threads > 0 ? options.threads : omp_get_max_threads());
 }
 
 void build_sensors(World& w) {
@@ -205,7 +212,7 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options)
   const StepInputs in = step_inputs(w);
   w.limits = time_step_limits(in);
   w.dt = choose_step(in, w.limits);
-  build_engine(w, options.threads > 0 ? options.threads : omp_get_max_threads());
+  build_engine(w, options);
   build_sensors(w);
   w.place_parts(0);
   if (!w.c.stages.empty()) w.start_stage(0, 0);
@@ -353,7 +360,7 @@ std::string Simulation::digest() const {
   }
   for (std::uint32_t k = 0; k < e.history_columns(); ++k) {
     for (std::size_t row = 0; row < e.pairs().entry_count(); ++row)
-      if (e.pairs().touching[row]) hash.add(&e.pairs().history[k * e.pairs().stride + row], sizeof(double));
+      if (e.pairs().touching[row]) hash.add(&e.pairs().history[row * e.pairs().columns + k], sizeof(double));
     for (std::size_t slot = 0; slot < e.walls().touching.size(); ++slot)
       if (e.walls().touching[slot]) hash.add(&e.walls().history[k * e.walls().stride + slot], sizeof(double));
   }

@@ -12,7 +12,8 @@
 namespace calx {
 
 struct SimulationOptions {
-  int threads = 0;  // 0: all
+  int threads = 0;     // 0: all
+  bool mixed = false;  // pair contacts in single precision, from exact positions; all else in double
   std::vector<std::string> plugin_path;
 };
 

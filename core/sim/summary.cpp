@@ -123,7 +123,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
                      {"started", facts.started},
                      {"seed", c.seed},
                      {"device", "cpu"},
-                     {"precision", "double"},
+                     {"precision", facts.mixed ? "mixed" : "double"},
                      {"arithmetic", "exact"},
                      {"threads", facts.threads}};
   j["presets"] = s.presets();

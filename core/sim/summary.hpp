@@ -14,6 +14,7 @@ struct RunFacts {
   std::string case_sha256, started;
   double wall_seconds = 0;
   double rate = 0;  // particle-steps per second of wall time, of this process
+  bool mixed = false;
   int threads = 0;
   std::vector<std::pair<std::string, double>> events;  // name, s
   std::vector<std::vector<double>> last;               // last row of each sensor

@@ -10,7 +10,7 @@
 namespace calx {
 
 std::string Engine::history_layout() const {
-  std::string text;
+  std::string text = options.mixed ? "mixed precision\n" : "";
   for (const LawList* list : laws) {
     if (!list) continue;
     text += list->label + ":";
@@ -46,7 +46,7 @@ void Engine::save(StateWriter& out) const {
   for (std::uint32_t k = 0; k < history_.columns; ++k) {
     column.clear();
     for (std::size_t e = 0; e < pairs_.entry_count(); ++e)
-      if (pairs_.touching[e]) column.push_back(pairs_.history[k * pairs_.stride + e]);
+      if (pairs_.touching[e]) column.push_back(pairs_.history[e * history_.columns + k]);
     out.put("contacts/pairs/history" + std::to_string(k), column.data(), column.size(), "see contacts/layout");
   }
   i.clear();
@@ -83,7 +83,7 @@ void Engine::save(StateWriter& out) const {
 
 void Engine::load(const StateReader& in) {
   if (in.get_text("contacts/layout") != history_layout())
-    throw Error(Fault::files, "checkpoint: its contact history was written by other laws; in the checkpoint:\n" +
+    throw Error(Fault::files, "checkpoint: its contact history was written by other laws or in another precision; in the checkpoint:\n" +
                                   in.get_text("contacts/layout") + "in this case:\n" + history_layout());
   particles.load(in);
   const auto margins = in.get_doubles("lists/margin"), reference = in.get_doubles("lists/reference"),
@@ -120,9 +120,9 @@ void Engine::load(const StateReader& in) {
   for (std::size_t k = 0; k < spheres; ++k) s[k].x = now[k].x, s[k].y = now[k].y, s[k].z = now[k].z;
   place_parts(0, places_);
   walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
-  sphere_wrench_.resize(spheres);
-  if (particles.has_clumps) sum_.resize(particles.count());
-  results_.resize(pairs_.chunks.size());
+  size_sums();
+  set_haste();
+  used_.assign(pairs_.chunks.size(), 1);  // not known: the first step looks at every particle
   rebuilds_ = counts[0];
   sorted_at_ = counts[1];
   stale_ = counts[2] != 0;
@@ -137,7 +137,7 @@ void Engine::load(const StateReader& in) {
     if (e == pairs_.entry_count() || pairs_.i[e] != i[c] || pairs_.j[e] != j[c])
       throw Error(Fault::files, "checkpoint: a contact stands between spheres that are far apart; the file is damaged");
     pairs_.touching[e] = 1;
-    for (std::uint32_t k = 0; k < history_.columns; ++k) pairs_.history[k * pairs_.stride + e] = columns[k][c];
+    for (std::uint32_t k = 0; k < history_.columns; ++k) pairs_.history[e * history_.columns + k] = columns[k][c];
   }
   const auto sphere = in.get_u32("contacts/walls/sphere"), part = in.get_u32("contacts/walls/part");
   const auto normals = in.get_doubles("contacts/walls/normal");

@@ -31,6 +31,7 @@ Engine::~Engine() = default;
 
 void Engine::prepare(int threads) {
   threads_ = std::max(1, threads);
+  kernels_ = &step_kernels();
   history_ = {};
   for (const LawList* list : laws)
     if (list && list->state_count > history_.columns) history_.columns = list->state_count;
@@ -196,11 +197,35 @@ void Engine::rebuild(double dt, bool reorder) {
     list_rank_[k] = k;
     reference_[k] = position(s[k]);
   }
+  size_sums();
+  set_haste();
+  used_.assign(pairs_.chunks.size(), 0);
+  ++rebuilds_;
+  stale_ = count_changed_ = false;
+}
+
+void Engine::size_sums() {
+  const std::size_t spheres = particles.sphere_count();
   sphere_wrench_.resize(spheres);
   if (particles.has_clumps) sum_.resize(particles.count());
   results_.resize(pairs_.chunks.size());
-  ++rebuilds_;
-  stale_ = count_changed_ = false;
+  if (!options.mixed) return;
+  lean_.resize(spheres);
+  lean_wrench_.resize(spheres);
+  lean_slot_.resize(pairs_.slot_wrench.size());
+  for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) thin_pass(c);
+}
+
+void Engine::thin_pass(std::size_t c) {
+  const Chunk& chunk = pairs_.chunks[c];
+  kernels_->thin(particles.spheres() + chunk.first_sphere, chunk.last_sphere - chunk.first_sphere,
+                 lean_.data() + chunk.first_sphere);
+}
+
+void Engine::set_haste() {
+  haste_.resize(particles.count());
+  for (std::size_t p = 0; p < particles.count(); ++p)
+    haste_[p] = static_cast<float>(1 / (margin_[p] * margin_[p])) * 1.000001f;
 }
 
 void Engine::rebuild_if_stale(double dt) {
@@ -222,7 +247,8 @@ void Engine::begin(double dt) {
 #pragma omp parallel for schedule(static) num_threads(team())
   for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
     drift_verlet(c, dt);
-    guard_pass(c);
+    if (options.mixed) thin_pass(c);
+    guard_pass(c, dt);
   }
   for (auto& r : results_) {
     stale_ |= r.stale;
@@ -253,7 +279,10 @@ GuardReport Engine::finish(double t, double dt) {
     for (std::size_t c = 0; c < chunk_count; ++c) {
       // Only a missing law throws; it must not leave the parallel region.
       try {
-        pair_pass(c, worker, t, dt);
+        if (options.mixed)
+          pair_pass<InMixed>(c, worker, t, dt);
+        else
+          pair_pass<InDouble>(c, worker, t, dt);
         wall_pass(c, worker, t, dt);
       } catch (...) {
 #pragma omp critical
@@ -274,7 +303,8 @@ GuardReport Engine::finish(double t, double dt) {
       } else {
         integrate_euler(c, dt);
       }
-      guard_pass(c);
+      if (options.mixed) thin_pass(c);
+      guard_pass(c, dt);
     }
   }
   if (failure) std::rethrow_exception(failure);
@@ -370,6 +400,7 @@ std::size_t Engine::memory_bytes() const {
   const Particles& p = particles;
   std::size_t bytes = pairs_.memory_bytes() + walls_.memory_bytes();
   bytes += (p.body.capacity() + p.member.capacity()) * sizeof(Record) + p.turn.capacity() * sizeof(Quat);
+  bytes += lean_.capacity() * sizeof(LeanRecord) + (lean_wrench_.capacity() + lean_slot_.capacity()) * sizeof(LeanWrench);
   bytes += (p.wrench.capacity() + sphere_wrench_.capacity() + sum_.capacity()) * sizeof(Wrench);
   bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() +
             p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *

@@ -22,6 +22,11 @@
 
 namespace calx {
 
+struct LeanRecord;
+struct LeanWrench;
+struct PairBlock;
+struct StepKernels;
+
 /// A wall part in the world.
 struct EnginePart {
   std::string name;
@@ -44,6 +49,7 @@ struct EngineOptions {
   Box domain;
   bool verlet = false;
   bool ledger = false;
+  bool mixed = false;  // pair contacts in single precision, from exact positions
   double skin = 0;             // m, smallest margin of a particle; 0: 0.1 of the smallest radius
   double overlap_limit = 0.5;  // of the radius
 };
@@ -125,16 +131,24 @@ class Engine {
   void check_periodic_lengths() const;
   void place_parts(double dt, std::vector<PartPlace>& places);
   bool parts_left_margin() const;
+  template <class Precision>
   void pair_pass(std::size_t chunk, Worker& worker, double t, double dt);
-  void evaluate_pairs(std::size_t chunk, Worker& worker, const LawList& list, std::uint32_t count, double t, double dt);
+  template <class Precision>
+  void evaluate_pairs(std::size_t chunk, Worker& worker, const PairBlock& pairs, const LawList& list, double t,
+                      double dt);
+  void thin_pass(std::size_t chunk);
+  void size_sums();
   void wall_pass(std::size_t chunk, Worker& worker, double t, double dt);
   void evaluate_walls(std::size_t chunk, Worker& worker, const LawList& list, double t, double dt);
   void sum_pass(std::size_t chunk);
   void force_pass(std::size_t chunk, Worker& worker, double t, double dt);
   void integrate_euler(std::size_t chunk, double dt);
+  void book_half(std::size_t chunk, double dt, bool before);
   void drift_verlet(std::size_t chunk, double dt);
   void finish_verlet(std::size_t chunk, double dt);
-  void guard_pass(std::size_t chunk);
+  void guard_pass(std::size_t chunk, double dt);
+  void guard_each(std::size_t chunk);
+  void set_haste();
   bool one_material() const;
   /// Threads worth waking: no more than there are chunks.
   int team() const;
@@ -146,9 +160,15 @@ class Engine {
   HistorySpec history_;
   Column<Wrench> sphere_wrench_;
   Column<Wrench> sum_;  // per clump, of this step
+  // Mixed precision only: spheres as the pair loop sees them, its sums, and what leaves chunks.
+  Column<LeanRecord> lean_;
+  Column<LeanWrench> lean_wrench_, lean_slot_;
   /// Sums per particle of this step: a particle of one sphere is its sphere.
   Column<Wrench>& sums() { return particles.has_clumps ? sum_ : sphere_wrench_; }
+  const StepKernels* kernels_ = nullptr;
   Column<double> margin_;            // per particle, m
+  Column<float> haste_;              // per particle, 1 / margin^2 rounded up, 1/m^2
+  std::vector<double> used_;         // per chunk: share of the margins used up since the lists were built, at most
   Column<Vec3> reference_;           // per sphere, position when the pair list was built
   Column<std::uint32_t> list_rank_;  // per sphere, its rank in the present list
   std::vector<PartPlace> places_;    // parts when the wall list was built

@@ -5,37 +5,30 @@
 #include <vector>
 
 #include "step/engine.hpp"
-
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(CALX_NO_CLONES)
-/// Chosen when the program loads; without contraction every instruction set gives the same bits.
-#define CALX_HOT __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define CALX_HOT
-#endif
+#include "step/kernels.hpp"
 
 namespace calx {
 
 /// Rows a block of contacts carries beside what a law sees.
 struct Engine::Worker {
-  explicit Worker(std::uint32_t state_columns) : scratch(state_columns) {}
-  BlockScratch scratch;
-  alignas(64) std::uint32_t entry[kBlockRows];    // of the tile, relative to its first entry
-  alignas(64) std::uint32_t ordinal[kBlockRows];  // number of entries before this one that leave the chunk
-  alignas(64) std::uint32_t i[kBlockStride], j[kBlockStride];
-  alignas(64) std::uint32_t bucket[kBlockRows], picked[kBlockRows], picked_ordinal[kBlockRows];
-  // Differences of positions, radii, masses and lever arms of a block.
-  alignas(64) double dx[kBlockStride], dy[kBlockStride], dz[kBlockStride];
-  alignas(64) double ri[kBlockStride], rj[kBlockStride], mi[kBlockStride], mj[kBlockStride];
-  alignas(64) double wix[kBlockStride], wiy[kBlockStride], wiz[kBlockStride];
-  alignas(64) double wjx[kBlockStride], wjy[kBlockStride], wjz[kBlockStride];
-  alignas(64) double arm_i[kBlockStride], arm_j[kBlockStride];
-  alignas(64) double gx[kBlockStride], gy[kBlockStride], gz[kBlockStride];
-  std::size_t tile = 0;        // first entry of the tile
-  std::size_t cross_done = 0;  // entries of the chunk before the tile that leave it
+  explicit Worker(std::uint32_t state_columns)
+      : in_double{BlockScratch(state_columns), {}, {}}, in_mixed{BlockScratchOf<float>(state_columns), {}, {}} {}
+  /// Of the pair loop in one precision.
+  template <class Real>
+  struct PairWork {
+    BlockScratchOf<Real> scratch;
+    alignas(64) Real arm_i[kColumnStride<Real>], arm_j[kColumnStride<Real>];
+  };
+  PairWork<double> in_double;
+  PairWork<float> in_mixed;
+  PairScan scan;
+  PairBlock found, picked;  // touching pairs, and those of them that one law list takes
+  const LawList* list_of_row[kBlockRows];
   // Wall block.
   std::uint32_t wall_count = 0;
   const LawList* wall_law = nullptr;
-  std::uint32_t wall_part[kBlockRows];
+  SurfacePoint found_points[kWallContacts];
+  std::uint32_t wall_sphere[kBlockRows], wall_part[kBlockRows];
   std::size_t wall_slot[kBlockRows];
   Vec3 wall_arm[kBlockRows], wall_lever[kBlockRows], wall_velocity[kBlockRows], wall_spin[kBlockRows];
   // Columns for particle forces.

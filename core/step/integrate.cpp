@@ -10,12 +10,6 @@
 namespace calx {
 namespace {
 
-/// Turns q by spin w over dt: Cayley's map, exact to third order in w dt, built from + - * / and sqrt.
-__attribute__((always_inline)) inline Quat turned(const Quat& q, const Vec3& w, double dt) {
-  const Quat step{1, 0.5 * dt * w.x, 0.5 * dt * w.y, 0.5 * dt * w.z};
-  return normalized(step * q);
-}
-
 /// Angular momentum from spin, and back, world frame; i: principal moments.
 Vec3 momentum(const Quat& q, const Vec3& i, const Vec3& w) {
   const Vec3 b = rotate(conjugate(q), w);
@@ -29,52 +23,11 @@ Vec3 spin_of(const Quat& q, const Vec3& i, const Vec3& l) {
 /// A place, speed or spin beyond this is no number any more, SI units.
 constexpr double kHuge = 1e30;
 
-/// Rows of a tile of the rotation loop; its columns stay in the first-level cache.
-constexpr std::uint32_t kTurnRows = 128;
-
-struct TurnTile {
-  alignas(64) double qw[kTurnRows], qx[kTurnRows], qy[kTurnRows], qz[kTurnRows];
-  alignas(64) double wx[kTurnRows], wy[kTurnRows], wz[kTurnRows];  // spin, world frame
-  alignas(64) double tx[kTurnRows], ty[kTurnRows], tz[kTurnRows];  // torque
-  alignas(64) double ix[kTurnRows], iy[kTurnRows], iz[kTurnRows];  // principal moments
-  alignas(64) double before[kTurnRows], after[kTurnRows];          // energy of rotation, J
-};
-
-/// Turns the bodies of a tile over dt by the midpoint rule: angular momentum gets torque * kick, the body turns freely
-/// (momentum kept exactly), then momentum gets torque * late_kick. Columns, so that the compiler works on eight at
-/// once.
-CALX_HOT void turn_bodies(std::uint32_t n, TurnTile& t, double dt, double kick, double late_kick) {
-#pragma omp simd
-  for (std::uint32_t k = 0; k < n; ++k) {
-    const Quat q{t.qw[k], t.qx[k], t.qy[k], t.qz[k]};
-    const Vec3 i{t.ix[k], t.iy[k], t.iz[k]}, inverse{1 / i.x, 1 / i.y, 1 / i.z};
-    const Vec3 w{t.wx[k], t.wy[k], t.wz[k]}, torque{t.tx[k], t.ty[k], t.tz[k]};
-    const Vec3 b = rotate(conjugate(q), w);
-    const Vec3 l0 = rotate(q, {i.x * b.x, i.y * b.y, i.z * b.z});
-    const Vec3 l = l0 + kick * torque;
-    const Vec3 b0 = rotate(conjugate(q), l);
-    const Quat half = turned(q, rotate(q, {b0.x * inverse.x, b0.y * inverse.y, b0.z * inverse.z}), 0.5 * dt);
-    const Vec3 b1 = rotate(conjugate(half), l);
-    const Quat now = turned(q, rotate(half, {b1.x * inverse.x, b1.y * inverse.y, b1.z * inverse.z}), dt);
-    const Vec3 l1 = l + late_kick * torque;
-    const Vec3 b2 = rotate(conjugate(now), l1);
-    const Vec3 w1 = rotate(now, {b2.x * inverse.x, b2.y * inverse.y, b2.z * inverse.z});
-    t.before[k] = 0.5 * dot(l0, w);
-    t.after[k] = 0.5 * dot(l1, w1);
-    t.qw[k] = now.w;
-    t.qx[k] = now.x;
-    t.qy[k] = now.y;
-    t.qz[k] = now.z;
-    t.wx[k] = w1.x;
-    t.wy[k] = w1.y;
-    t.wz[k] = w1.z;
-  }
-}
-
 /// turn_bodies for particles first .. last; wrench: their torques. Returns the sums of the energies of rotation before
 /// and after, J.
-std::pair<double, double> turn_particles(Particles& p, const Column<Wrench>& wrench, std::uint32_t first,
-                                         std::uint32_t last, double dt, double kick, double late_kick) {
+std::pair<double, double> turn_particles(const StepKernels& kernels, Particles& p, const Column<Wrench>& wrench,
+                                         std::uint32_t first, std::uint32_t last, double dt, double kick,
+                                         double late_kick) {
   TurnTile t;
   std::pair<double, double> energy{0, 0};
   for (std::uint32_t start = first; start < last; start += kTurnRows) {
@@ -98,7 +51,7 @@ std::pair<double, double> turn_particles(Particles& p, const Column<Wrench>& wre
       t.iy[k] = i.y;
       t.iz[k] = i.z;
     }
-    turn_bodies(n, t, dt, kick, late_kick);
+    kernels.turn_bodies(n, t, dt, kick, late_kick);
     for (std::uint32_t k = 0; k < n; ++k) {
       p.turn[start + k] = {t.qw[k], t.qx[k], t.qy[k], t.qz[k]};
       Record& b = p.body[start + k];
@@ -138,6 +91,10 @@ void Engine::sum_pass(std::size_t c) {
     for (std::size_t slot = in.first; slot < in.last; ++slot) {
       if (!pairs_.slot_used[slot]) continue;
       Wrench& a = sphere_wrench_[pairs_.slot_sphere[slot]];
+      if (options.mixed) {
+        kernels_->widen(&lean_slot_[slot], 1, &a);
+        continue;
+      }
       const Wrench& b = pairs_.slot_wrench[slot];
       a.fx += b.fx;
       a.fy += b.fy;
@@ -146,6 +103,9 @@ void Engine::sum_pass(std::size_t c) {
       a.ty += b.ty;
       a.tz += b.tz;
     }
+  if (options.mixed)
+    kernels_->widen(lean_wrench_.data() + chunk.first_sphere, chunk.last_sphere - chunk.first_sphere,
+                    sphere_wrench_.data() + chunk.first_sphere);
   if (!particles.has_clumps) return;
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
     Wrench sum;
@@ -205,33 +165,38 @@ void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
   }
 }
 
-void Engine::integrate_euler(std::size_t c, double dt) {
+// Velocities of euler stand half a step from positions, so energy at an instant is the mean of both sides of the kick;
+// half is booked before the kick and half after it.
+void Engine::book_half(std::size_t c, double dt, bool before) {
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
-  const Vec3 g = options.gravity;
-  const Column<Wrench>& total = sums();
+  Vec3 momentum;
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
-    Record& b = particles.body[p];
-    const Wrench& sum = total[p];
-    const double f = dt / b.m;
-    const Vec3 v{b.vx + (f * sum.fx + g.x * dt), b.vy + (f * sum.fy + g.y * dt), b.vz + (f * sum.fz + g.z * dt)};
-    if (options.ledger) {
-      // Velocities of euler stand half a step from positions, so energy at this instant is the mean of both sides.
-      result.kinetic_translation += 0.25 * b.m * (norm2(velocity(b)) + norm2(v));
-      result.gravity -= b.m * dot(g, position(b));
-    }
-    set_velocity(b, v);
-    move(b, v, dt);
-    result.gravity_work += b.m * dot(g, v) * dt;
-    if (particles.has_clumps) continue;
-    const double before = norm2(spin(b)) / b.aux;
-    set_spin(b, spin(b) + dt * b.aux * torque_of(sum));
-    result.kinetic_rotation += 0.25 * (before + norm2(spin(b)) / b.aux);
+    const Record& b = particles.body[p];
+    result.kinetic_translation += 0.25 * b.m * norm2(velocity(b));
+    if (!particles.has_clumps) result.kinetic_rotation += 0.25 * norm2(spin(b)) / b.aux;
+    if (before)
+      result.gravity -= b.m * dot(options.gravity, position(b));
+    else
+      momentum += b.m * velocity(b);
   }
-  if (!particles.has_clumps) return;
-  const auto energy = turn_particles(particles, total, chunk.first_particle, chunk.last_particle, dt, dt, 0);
-  result.kinetic_rotation += 0.5 * (energy.first + energy.second);
-  particles.refresh_members(chunk.first_particle, chunk.last_particle);
+  result.gravity_work += dot(options.gravity, momentum) * dt;
+}
+
+void Engine::integrate_euler(std::size_t c, double dt) {
+  const Chunk& chunk = pairs_.chunks[c];
+  const std::size_t first = chunk.first_particle, count = chunk.last_particle - chunk.first_particle;
+  const double gravity[3] = {options.gravity.x, options.gravity.y, options.gravity.z};
+  if (options.ledger) book_half(c, dt, true);
+  const auto move = particles.has_clumps ? kernels_->move_clumps : kernels_->move_spheres;
+  move(particles.body.data() + first, sums().data() + first, count, gravity, dt);
+  if (particles.has_clumps) {
+    const auto energy =
+        turn_particles(*kernels_, particles, sums(), chunk.first_particle, chunk.last_particle, dt, dt, 0);
+    results_[c].kinetic_rotation += 0.5 * (energy.first + energy.second);
+    particles.refresh_members(chunk.first_particle, chunk.last_particle);
+  }
+  if (options.ledger) book_half(c, dt, false);
 }
 
 void Engine::drift_verlet(std::size_t c, double dt) {
@@ -247,7 +212,7 @@ void Engine::drift_verlet(std::size_t c, double dt) {
     if (!particles.has_clumps) set_spin(b, spin(b) + 0.5 * dt * b.aux * torque_of(old));
   }
   if (!particles.has_clumps) return;
-  turn_particles(particles, particles.wrench, chunk.first_particle, chunk.last_particle, dt, 0.5 * dt, 0);
+  turn_particles(*kernels_, particles, particles.wrench, chunk.first_particle, chunk.last_particle, dt, 0.5 * dt, 0);
   particles.refresh_members(chunk.first_particle, chunk.last_particle);
 }
 
@@ -292,12 +257,28 @@ std::string bad_motion(const Record& b, const Vec3& listed) {
   return out + text;
 }
 
-void Engine::guard_pass(std::size_t c) {
+void Engine::guard_pass(std::size_t c, double dt) {
+  const Chunk& chunk = pairs_.chunks[c];
+  Survey seen;
+  kernels_->survey(particles.body.data() + chunk.first_particle, haste_.data() + chunk.first_particle,
+                   chunk.last_particle - chunk.first_particle, particles.has_clumps, seen);
+  used_[c] += dt * std::sqrt(seen.pace2);
+  bool inside = true;
+  for (int k = 0; k < 3; ++k)
+    inside &= options.wrap.periodic[static_cast<std::size_t>(k)] ||
+              (seen.lo[k] >= options.domain.lo[k] && seen.hi[k] <= options.domain.hi[k]);
+  // Written so that a NaN counts as bad.
+  if (!inside || !(seen.squares < 1e50) || !(used_[c] < 1 - 1e-9)) guard_each(c);
+}
+
+// What the bounds of guard_pass cannot tell.
+void Engine::guard_each(std::size_t c) {
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
   const Box& box = options.domain;
   const auto& periodic = options.wrap.periodic;
   const Record* s = particles.spheres();
+  double used = 0;  // squared
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
     const Record& b = particles.body[p];
     const double size = std::fabs(b.x) + std::fabs(b.y) + std::fabs(b.z) + std::fabs(b.vx) + std::fabs(b.vy) +
@@ -313,10 +294,14 @@ void Engine::guard_pass(std::size_t c) {
                         (periodic[2] || (b.z >= box.lo.z && b.z <= box.hi.z));
     if (!inside) result.outside.push_back(p);
     const double limit = margin_[p] * margin_[p];
+    double moved = 0;
     const std::uint32_t first = particles.has_clumps ? particles.first_sphere[p] : p;
     const std::uint32_t last = particles.has_clumps ? particles.first_sphere[p + 1] : p + 1;
-    for (std::uint32_t k = first; k < last; ++k) result.stale |= norm2(position(s[k]) - reference_[k]) > limit;
+    for (std::uint32_t k = first; k < last; ++k) moved = std::max(moved, norm2(position(s[k]) - reference_[k]));
+    result.stale |= moved > limit;
+    used = std::max(used, moved / limit);
   }
+  used_[c] = std::sqrt(used);
 }
 
 }  // namespace calx

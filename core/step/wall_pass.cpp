@@ -13,7 +13,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
   ChunkResult& result = results_[c];
   result.load.assign(parts.size(), Wrench{});
   const Record* s = particles.spheres();
-  BlockScratch& block = w.scratch;
+  BlockScratch& block = w.in_double.scratch;
   w.wall_count = 0;
   w.wall_law = nullptr;
   for (std::size_t row = walls_.first_row[c]; row < walls_.first_row[c + 1]; ++row) {
@@ -22,7 +22,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
     const Record& a = s[sphere];
     const Vec3 centre = position(a);
     const Vec3 local = part.pose.to_part(centre);
-    SurfacePoint found[kWallContacts];
+    SurfacePoint* found = w.found_points;
     const std::uint32_t first = walls_.first_element[row];
     const std::size_t count = part.surface->closest(local, a.r, walls_.elements.data() + first,
                                                     walls_.first_element[row + 1] - first, found, kWallContacts);
@@ -72,7 +72,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
       const Vec3 point = centre + arm;
       const Vec3 wall = part.pose.velocity_at(point);
       const Vec3 v = velocity(a) + cross(spin(a), arm) - wall, spin_relative = spin(a) - part.pose.spin;
-      w.i[n] = sphere;
+      w.wall_sphere[n] = sphere;
       w.wall_part[n] = part_number;
       w.wall_slot[n] = slot0 + static_cast<std::size_t>(slot_of[k]);
       w.wall_arm[n] = arm;
@@ -105,7 +105,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
 
 void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, double t, double dt) {
   ChunkResult& result = results_[c];
-  BlockScratch& block = w.scratch;
+  BlockScratch& block = w.in_double.scratch;
   const std::uint32_t n = w.wall_count;
   w.wall_count = 0;
   block.count = n;
@@ -127,7 +127,7 @@ void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, doubl
     const Vec3 f{block.out(CALX_OUT_FX)[k], block.out(CALX_OUT_FY)[k], block.out(CALX_OUT_FZ)[k]};
     const Vec3 m{block.out(CALX_OUT_MX)[k], block.out(CALX_OUT_MY)[k], block.out(CALX_OUT_MZ)[k]};
     const Vec3 on_i = cross(w.wall_arm[k], f) + m, on_part = cross(w.wall_lever[k], f) + m;
-    Wrench& a = sphere_wrench_[w.i[k]];
+    Wrench& a = sphere_wrench_[w.wall_sphere[k]];
     a.fx += f.x;
     a.fy += f.y;
     a.fz += f.z;

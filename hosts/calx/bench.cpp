@@ -29,7 +29,7 @@ struct Bench {
   long long particles = 100000;
   int threads = 1, steps = 400, warm_up = 100;
   double rolling = 0;
-  bool json = false;
+  bool json = false, mixed = false;
 };
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -157,6 +157,7 @@ void run_bench(const Bench& b) {
   if (b.name == "pour") seeds = pour_start(seeds, lx, ly);
   SimulationOptions options;
   options.threads = b.threads;
+  options.mixed = b.mixed;
   Simulation sim(box_case(seeds, lx, ly, 9.8e-6, b.rolling), options);
   seeds = {};
   for (int k = 0; k < b.warm_up; ++k) sim.step();
@@ -221,6 +222,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--rolling", b->rolling, "rolling friction, 0 for none")->check(zero_or_more());
   command->add_option("--start", b->start, "CSV with the settled tile of 50 x 50 mm (default: settle one)");
   command->add_option("--save", b->save, "write the settled tile to this CSV");
+  command->add_flag("--mixed", b->mixed, "pair contacts in single precision");
   command->add_flag("--json", b->json, "one JSON line");
   command->callback([b] { run_bench(*b); });
 }

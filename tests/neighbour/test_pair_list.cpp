@@ -196,7 +196,7 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
       list.touching[e] = e % 3 != 0;
       const std::uint32_t a = p.sphere_id[list.i[e]], b = p.sphere_id[list.j[e]];
       for (int k = 0; k < 3; ++k)
-        list.history[static_cast<std::size_t>(k) * list.stride + e] =
+        list.history[e * list.columns + static_cast<std::size_t>(k)] =
             k == 1 && a > b ? -value(b, a, k) : value(std::min(a, b), std::max(a, b), k);
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> touching;
@@ -235,7 +235,7 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
       turned += a > b;
       for (int k = 0; k < 3; ++k) {
         const double want = value(std::min(a, b), std::max(a, b), k);
-        CHECK(list.history[static_cast<std::size_t>(k) * list.stride + e] == (k == 1 && a > b ? -want : want));
+        CHECK(list.history[e * list.columns + static_cast<std::size_t>(k)] == (k == 1 && a > b ? -want : want));
       }
     }
     CHECK(carried > 300);
