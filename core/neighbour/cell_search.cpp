@@ -1,0 +1,550 @@
+#include "neighbour/cell_search.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/hot.hpp"
+#include "neighbour/cell_levels.hpp"
+
+namespace calx {
+namespace {
+
+/// Cells are wider than the largest pair distance by this share, above the rounding of cell coordinates.
+constexpr double kRoundingShare = 1e-6;
+/// Cell coordinates are counted from origin - kHalfRange cells; what is farther away counts as there.
+constexpr double kHalfRange = 1e9;
+/// Cells per sphere of a level above which it is folded, and what it then has at least.
+constexpr std::uint64_t kMostCells = 8, kFoldedCells = 4;
+constexpr std::uint64_t kFewestCells = 1024;
+/// Spheres below which threads do not pay.
+constexpr std::size_t kParallel = 4096;
+
+/// Rises with x over all numbers; neighbours of one cell width apart differ by at most one.
+inline std::uint32_t cell_coordinate(double x, double origin, double inverse) {
+  double c = (x - origin) * inverse;
+  c = c < kHalfRange ? c : kHalfRange;
+  c = c > -kHalfRange ? c : -kHalfRange;
+  return static_cast<std::uint32_t>(static_cast<std::int32_t>(c + kHalfRange));
+}
+
+inline std::uint32_t cell_of(const CellSearch::Level& g, const Vec3& origin, const Vec3& x) {
+  return ((cell_coordinate(x.x, origin.x, g.inverse) - g.low[0]) * g.stride[0] +
+          (cell_coordinate(x.y, origin.y, g.inverse) - g.low[1]) * g.stride[1] +
+          (cell_coordinate(x.z, origin.z, g.inverse) - g.low[2]) * g.stride[2]) &
+         g.mask;
+}
+
+inline Vec3 inside(const Wrap& wrap, bool wraps, const Record& s) {
+  if (!wraps) return position(s);
+  Vec3 x = position(s);
+  for (int k = 0; k < 3; ++k)
+    if (wrap.periodic[static_cast<std::size_t>(k)]) x[k] = wrap.inside(x[k], k);
+  return x;
+}
+
+/// Strides and size of the table of a level of count spheres.
+void lay_out(CellSearch::Level& g, std::uint64_t count) {
+  std::uint64_t extent[3];
+  // One empty cell between rows and between layers, and three at least, so that no cell is its own neighbour.
+  for (int k = 0; k < 3; ++k) extent[k] = std::max<std::uint64_t>(g.high[k] - g.low[k] + std::uint64_t{2}, 3);
+  const double all = static_cast<double>(extent[0]) * static_cast<double>(extent[1]) * static_cast<double>(extent[2]);
+  const std::uint64_t most = std::max<std::uint64_t>(4 * kFewestCells, kMostCells * count);
+  std::uint64_t cells = kFewestCells;
+  while (cells < most && static_cast<double>(cells) < all) cells *= 2;
+  if (static_cast<double>(cells) >= all) {
+    g.stride[0] = 1;
+    g.stride[1] = static_cast<std::uint32_t>(extent[0]);
+    g.stride[2] = static_cast<std::uint32_t>(extent[0] * extent[1]);
+    g.folded = false;
+  } else {
+    // Odd strides near the powers of the third root: blocks of cells up to about that size do not meet themselves.
+    cells = kFewestCells;
+    while (cells < kFoldedCells * count) cells *= 2;
+    const double side = std::cbrt(static_cast<double>(cells));
+    g.stride[0] = 1;
+    g.stride[1] = static_cast<std::uint32_t>(side) | 1;
+    g.stride[2] = static_cast<std::uint32_t>(side * side) | 1;
+    g.folded = true;
+  }
+  g.mask = static_cast<std::uint32_t>(cells - 1);
+}
+
+}  // namespace
+
+/// What the comparisons read, as plain pointers.
+struct CellSearch::View {
+  const double *x, *y, *z, *reach;
+  const std::uint32_t *rank, *cell_start, *cell_of, *place, *owner;
+  const Level* levels;
+  std::uint32_t level_count;
+  Vec3 origin;
+  Wrap wrap;
+  bool wraps;
+};
+
+namespace {
+
+using Doubles = double __attribute__((vector_size(64)));
+using Bytes = std::int8_t __attribute__((vector_size(8)));
+
+struct Query {
+  double x, y, z, reach;
+};
+
+/// Which of eight spheres from place b on are within reach, one bit each.
+__attribute__((always_inline)) inline std::uint32_t near_eight(const CellSearch::View& v, std::size_t b, const Query& q) {
+  Doubles x, y, z, cut;
+  std::memcpy(&x, v.x + b, sizeof x);
+  std::memcpy(&y, v.y + b, sizeof y);
+  std::memcpy(&z, v.z + b, sizeof z);
+  std::memcpy(&cut, v.reach + b, sizeof cut);
+  x -= q.x;
+  y -= q.y;
+  z -= q.z;
+  cut += q.reach;
+  const Bytes bytes = __builtin_convertvector(x * x + y * y + z * z < cut * cut, Bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, &bytes, sizeof bits);
+  // The lowest bit of byte k becomes bit 56 + k.
+  return static_cast<std::uint32_t>((bits & 0x0101010101010101ull) * 0x0102040810204080ull >> 56);
+}
+
+/// Where pairs go.
+struct Found {
+  std::vector<std::uint64_t>& pairs;  // the first `used` are set
+  std::vector<std::uint64_t>& foreign;
+  std::uint32_t* count;
+  std::uint32_t first;
+  std::size_t used = 0;
+};
+
+/// Pairs that may be kept before the next call of make_room().
+constexpr std::size_t kRoom = 64;
+__attribute__((noinline)) void grow(std::vector<std::uint64_t>& pairs) { pairs.resize(2 * pairs.size() + 4 * kRoom); }
+__attribute__((always_inline)) inline void make_room(Found& out) {
+  if (out.used + kRoom > out.pairs.size()) grow(out.pairs);
+}
+
+__attribute__((always_inline)) inline void keep(const CellSearch::View& v, Found& out, std::uint32_t k,
+                                                std::uint32_t own, std::uint32_t j) {
+  if (v.owner && v.owner[j] == own) return;
+  const std::uint32_t lo = j < k ? j : k, hi = j < k ? k : j;
+  const std::uint64_t pair = static_cast<std::uint64_t>(lo) << 32 | hi;
+  if (lo < out.first) {
+    out.foreign.push_back(pair);
+    return;
+  }
+  ++out.count[lo - out.first];
+  out.pairs[out.used++] = pair;
+}
+
+/// Places begin .. end against q. only_higher: partners of lower rank find k themselves.
+__attribute__((always_inline)) inline void compare(const CellSearch::View& v, Found& out, std::uint32_t begin,
+                                                   std::uint32_t end, const Query& q, std::uint32_t k,
+                                                   std::uint32_t own, bool only_higher) {
+  for (std::uint32_t b = begin; b < end; b += 8) {
+    std::uint32_t bits = near_eight(v, b, q);
+    if (end - b < 8) bits &= (1u << (end - b)) - 1;
+    make_room(out);
+    for (; bits; bits &= bits - 1) {
+      const std::uint32_t j = v.rank[b + static_cast<std::uint32_t>(__builtin_ctz(bits))];
+      if (only_higher && j < k) continue;
+      keep(v, out, k, own, j);
+    }
+  }
+}
+
+/// All cells of a level that q can reach.
+__attribute__((always_inline)) inline void window(const CellSearch::View& v, const CellSearch::Level& g, Found& out,
+                                                  const Query& q, std::uint32_t k, std::uint32_t own,
+                                                  bool only_higher) {
+  const double far = q.reach + g.reach + kRoundingShare * g.cell;
+  const double at[3] = {q.x, q.y, q.z}, origin[3] = {v.origin.x, v.origin.y, v.origin.z};
+  std::uint32_t first[3], last[3];
+  for (int d = 0; d < 3; ++d) {
+    first[d] = cell_coordinate(at[d] - far, origin[d], g.inverse);
+    last[d] = cell_coordinate(at[d] + far, origin[d], g.inverse);
+    if (last[d] < g.low[d] || first[d] > g.high[d]) return;
+    first[d] = first[d] > g.low[d] ? first[d] : g.low[d];
+    last[d] = last[d] < g.high[d] ? last[d] : g.high[d];
+  }
+  const double rows = (1.0 + last[1] - first[1]) * (1.0 + last[2] - first[2]);
+  if (rows * 8 > g.last - g.first) {
+    compare(v, out, g.first, g.last, q, k, own, only_higher);
+    return;
+  }
+  const std::uint32_t* start = v.cell_start + g.start;
+  // Distance from the query to the layer or row c; the outermost reach as far as there are spheres.
+  auto gap = [&](std::uint32_t c, int d) {
+    if (c == g.low[d] || c == g.high[d]) return 0.0;
+    const double lower = origin[d] + (static_cast<double>(c) - kHalfRange) * g.cell - at[d];
+    return lower > 0 ? lower : lower + g.cell < 0 ? -(lower + g.cell) : 0;
+  };
+  for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
+    const double dz = gap(z, 2);
+    for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
+      const double dy = gap(y, 1), rest = far * far - dz * dz - dy * dy;
+      if (rest < 0) continue;
+      const double chord = __builtin_sqrt(rest) + kRoundingShare * g.cell;
+      std::uint32_t x0 = cell_coordinate(q.x - chord, origin[0], g.inverse);
+      std::uint32_t x1 = cell_coordinate(q.x + chord, origin[0], g.inverse);
+      if (x1 < first[0] || x0 > last[0]) continue;
+      x0 = x0 > first[0] ? x0 : first[0];
+      x1 = x1 < last[0] ? x1 : last[0];
+      std::uint32_t cell = (x0 - g.low[0]) * g.stride[0] + (y - g.low[1]) * g.stride[1] + (z - g.low[2]) * g.stride[2];
+      // A row may run over the end of a folded table.
+      for (std::uint32_t left = x1 - x0 + 1; left > 0;) {
+        cell &= g.mask;
+        const std::uint32_t part = left < g.mask + 1 - cell ? left : g.mask + 1 - cell;
+        compare(v, out, start[cell], start[cell + part], q, k, own, only_higher);
+        cell += part;
+        left -= part;
+      }
+    }
+  }
+}
+
+/// Later cells of the sphere's own level: the rest of its cell and the next of its row, and four rows of three.
+__attribute__((always_inline)) inline void later_cells(const CellSearch::View& v, const CellSearch::Level& g, Found& out,
+                                                       const Query& q, std::uint32_t k, std::uint32_t own) {
+  const std::uint32_t* start = v.cell_start + g.start;
+  const std::uint32_t cell = v.cell_of[k], sy = g.stride[1], sz = g.stride[2];
+  const std::uint32_t rows[4] = {cell + sy - 1, cell + sz - sy - 1, cell + sz - 1, cell + sz + sy - 1};
+  std::uint32_t base[5];
+  std::uint64_t bits = 0;
+  base[0] = v.place[k] + 1;
+  const std::uint32_t own_end = start[cell + 2], own_count = own_end - base[0];
+  bits = near_eight(v, base[0], q) & ((1u << (own_count < 8 ? own_count : 8)) - 1);
+  if (own_count > 8) compare(v, out, base[0] + 8, own_end, q, k, own, false);
+  for (int r = 0; r < 4; ++r) {
+    const std::uint32_t c = rows[r] & g.mask, begin = start[c], end = start[c + 3], count = end - begin;
+    base[r + 1] = begin;
+    const std::uint64_t row = near_eight(v, begin, q) & ((1u << (count < 8 ? count : 8)) - 1);
+    bits |= row << (8 * (r + 1));
+    if (count > 8) compare(v, out, begin + 8, end, q, k, own, false);
+  }
+  make_room(out);
+  for (; bits; bits &= bits - 1) {
+    const int bit = __builtin_ctzll(bits);
+    keep(v, out, k, own, v.rank[base[bit >> 3] + static_cast<std::uint32_t>(bit & 7)]);
+  }
+}
+
+/// Spheres first .. last with all that stand later in their level and all of finer levels.
+CALX_HOT void search(const CellSearch::View& v, std::uint32_t first, std::uint32_t last, Found& out) {
+  for (std::uint32_t k = first; k < last; ++k) {
+    const std::uint32_t p = v.place[k], own = v.owner ? v.owner[k] : k;
+    const Query q{v.x[p], v.y[p], v.z[p], v.reach[p]};
+    std::uint32_t level = 0;
+    while (p >= v.levels[level].last) ++level;
+    later_cells(v, v.levels[level], out, q, k, own);
+    if (level == 0 && !v.wraps) continue;
+    for (std::uint32_t g = level + 1; g-- > 0;) {
+      const double far = q.reach + v.levels[g].reach;
+      // Images of q that can reach the box: shift by -1, 0, 1 lengths along each direction.
+      int from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+      if (v.wraps)
+        for (int d = 0; d < 3; ++d) {
+          if (!v.wrap.periodic[static_cast<std::size_t>(d)]) continue;
+          const double x = d == 0 ? q.x : d == 1 ? q.y : q.z, lo = v.wrap.lo[d], hi = lo + v.wrap.length[d];
+          if (hi - x < far * (1 + kRoundingShare)) from[d] = -1;
+          if (x - lo < far * (1 + kRoundingShare)) to[d] = 1;
+        }
+      for (int c = from[2]; c <= to[2]; ++c)
+        for (int b = from[1]; b <= to[1]; ++b)
+          for (int a = from[0]; a <= to[0]; ++a) {
+            const bool image = a || b || c;
+            if (g == level && !image) continue;
+            const Query image_of{q.x + a * v.wrap.length.x, q.y + b * v.wrap.length.y, q.z + c * v.wrap.length.z,
+                                 q.reach};
+            window(v, v.levels[g], out, image_of, k, own, g == level);
+          }
+    }
+  }
+}
+
+}  // namespace
+
+void CellSearch::measure(const Particles& p, const Wrap& wrap, const Column<double>& margin) {
+  const Record* s = p.spheres();
+  const std::size_t n = p.sphere_count();
+  const bool wraps = wrap.any();
+  double x0 = 1e300, y0 = 1e300, z0 = 1e300, x1 = -1e300, y1 = -1e300, z1 = -1e300, least = 1e300, most = 0;
+#pragma omp parallel for schedule(static) if (n > kParallel) reduction(min : x0, y0, z0, least) reduction(max : x1, y1, z1, most)
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 x = inside(wrap, wraps, s[k]);
+    const double reach = s[k].r + margin[p.owner_of(k)];
+    x0 = std::min(x0, x.x), y0 = std::min(y0, x.y), z0 = std::min(z0, x.z);
+    x1 = std::max(x1, x.x), y1 = std::max(y1, x.y), z1 = std::max(z1, x.z);
+    least = std::min(least, reach), most = std::max(most, reach);
+  }
+  // The middle of some spheres, so that a stray one does not take the digits from the others.
+  std::vector<double> sample[3];
+  for (std::size_t k = 0; k < n; k += n / 16 + 1)
+    for (int d = 0; d < 3; ++d) sample[d].push_back(inside(wrap, wraps, s[k])[d]);
+  for (int d = 0; d < 3; ++d) {
+    const auto middle = sample[d].begin() + static_cast<std::ptrdiff_t>(sample[d].size() / 2);
+    std::nth_element(sample[d].begin(), middle, sample[d].end());
+    origin_[d] = *middle;
+  }
+
+  const ReachClasses classes(least, most);
+  std::vector<ReachClasses::Class> found(classes.class_count());
+  if (found.size() == 1) {
+    found[0] = {n, most};
+  } else {
+#pragma omp parallel if (n > kParallel)
+    {
+      std::vector<ReachClasses::Class> own(classes.class_count());
+#pragma omp for schedule(static) nowait
+      for (std::size_t k = 0; k < n; ++k) {
+        const double reach = s[k].r + margin[p.owner_of(k)];
+        ReachClasses::Class& c = own[classes.class_of(reach)];
+        ++c.count;
+        c.largest = std::max(c.largest, reach);
+      }
+#pragma omp critical
+      for (std::size_t c = 0; c < own.size(); ++c) {
+        found[c].count += own[c].count;
+        found[c].largest = std::max(found[c].largest, own[c].largest);
+      }
+    }
+  }
+  levels_.clear();
+  std::size_t start = 0;
+  for (const double reach : choose_levels(found)) {
+    Level g;
+    g.reach = reach;
+    g.cell = reach > 0 ? 2 * reach * (1 + kRoundingShare) : 1;
+    g.inverse = 1 / g.cell;
+    const double low[3] = {x0, y0, z0}, high[3] = {x1, y1, z1};
+    for (int d = 0; d < 3; ++d) {
+      g.low[d] = cell_coordinate(low[d], origin_[d], g.inverse);
+      g.high[d] = cell_coordinate(high[d], origin_[d], g.inverse);
+    }
+    std::uint64_t count = 0;
+    for (const auto& c : found)
+      if (c.largest <= reach && (levels_.empty() || c.largest > levels_.back().reach)) count += c.count;
+    lay_out(g, count);
+    g.start = start;
+    start += g.mask + 4;
+    levels_.push_back(g);
+  }
+  cell_start_.assign(start, 0);
+  repeats_ = false;
+  for (const Level& g : levels_) repeats_ = repeats_ || (g.folded && (wraps || levels_.size() > 1));
+  for (int d = 0; d < 3; ++d)
+    if (wrap.periodic[static_cast<std::size_t>(d)] && wrap.length[d] < 4.01 * most) repeats_ = true;
+}
+
+namespace {
+
+/// Replaces counts by the sum of those before, from `sum` on; returns the sum of all.
+std::uint32_t sum_up(std::uint32_t* counts, std::size_t n, std::uint32_t sum) {
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t c = counts[k];
+    counts[k] = sum;
+    sum += c;
+  }
+  return sum;
+}
+
+std::uint32_t sum_up_on_threads(std::uint32_t* counts, std::size_t n, std::uint32_t sum) {
+  const auto blocks = static_cast<std::size_t>(omp_get_max_threads());
+  if (blocks == 1 || n < 16 * kParallel) return sum_up(counts, n, sum);
+  std::vector<std::uint32_t> before(blocks + 1, sum);
+  const std::size_t length = (n + blocks - 1) / blocks;
+  auto begin = [&](std::size_t b) { return std::min(n, b * length); };
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < blocks; ++b) {
+    std::uint32_t total = 0;
+    for (std::size_t k = begin(b); k < begin(b + 1); ++k) total += counts[k];
+    before[b + 1] = total;
+  }
+  for (std::size_t b = 0; b < blocks; ++b) before[b + 1] += before[b];
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < blocks; ++b) sum_up(counts + begin(b), begin(b + 1) - begin(b), before[b]);
+  return before[blocks];
+}
+
+}  // namespace
+
+void CellSearch::bin(const Particles& p, const Wrap& wrap, const Column<double>& margin) {
+  const Record* s = p.spheres();
+  const std::size_t n = p.sphere_count();
+  const bool wraps = wrap.any();
+  cell_of_.resize(n);
+  place_.resize(n);
+  auto level_of = [&](double reach) {
+    std::size_t g = 0;
+    while (reach > levels_[g].reach) ++g;
+    return g;
+  };
+  // First the number of a sphere within its cell. Threads may number them in any order: it shows in no result.
+  const bool alone = omp_get_max_threads() == 1 || n <= kParallel;
+#pragma omp parallel for schedule(static) if (!alone)
+  for (std::size_t k = 0; k < n; ++k) {
+    const Level& g = levels_[level_of(s[k].r + margin[p.owner_of(k)])];
+    cell_of_[k] = calx::cell_of(g, origin_, inside(wrap, wraps, s[k]));
+    std::uint32_t& count = cell_start_[g.start + cell_of_[k]];
+    if (alone) {
+      place_[k] = count++;
+    } else {
+      std::uint32_t number;
+#pragma omp atomic capture
+      number = count++;
+      place_[k] = number;
+    }
+  }
+  std::uint32_t sum = 0;
+  for (Level& g : levels_) {
+    std::uint32_t* start = &cell_start_[g.start];
+    const std::size_t cells = g.mask + std::size_t{1};
+    g.first = sum;
+    g.last = sum_up_on_threads(start, cells, sum);
+    start[cells] = g.last;
+    start[cells + 1] = g.last + start[1] - start[0];
+    start[cells + 2] = sum = g.last + start[2] - start[0];
+  }
+  // The last eight compared may reach beyond the end.
+  for (auto* c : {&x_, &y_, &z_, &reach_}) c->resize(sum + 8);
+  rank_.resize(sum + 8);
+#pragma omp parallel for schedule(static) if (n > kParallel)
+  for (std::size_t k = 0; k < n; ++k) {
+    const double reach = s[k].r + margin[p.owner_of(k)];
+    const std::uint32_t at = place_[k] += cell_start_[levels_[level_of(reach)].start + cell_of_[k]];
+    const Vec3 x = inside(wrap, wraps, s[k]);
+    x_[at] = x.x;
+    y_[at] = x.y;
+    z_[at] = x.z;
+    reach_[at] = reach;
+    rank_[at] = static_cast<std::uint32_t>(k);
+  }
+  for (const Level& g : levels_) {
+    const std::uint32_t* start = &cell_start_[g.start];
+    for (std::uint32_t b = start[0]; b < start[2]; ++b) {
+      const std::uint32_t to = g.last + b - g.first;
+      for (auto* c : {&x_, &y_, &z_, &reach_}) (*c)[to] = (*c)[b];
+      rank_[to] = rank_[b];
+    }
+  }
+}
+
+void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) const {
+  const std::size_t n = run.count.size();
+  // Rows start where those before end; next moves to the end of each.
+  auto& next = scratch.next;
+  next.resize(n);
+  std::uint32_t sum = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    next[k] = sum;
+    sum += run.count[k];
+  }
+  run.partner.resize(found);
+  const std::uint32_t first = scratch.first;
+  for (std::size_t e = 0; e < found; ++e)
+    run.partner[next[(scratch.pairs[e] >> 32) - first]++] = static_cast<std::uint32_t>(scratch.pairs[e]);
+  std::uint32_t* row = run.partner.data();
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t length = run.count[k];
+    if (length > 24) {
+      std::sort(row, row + length);
+    } else {
+      for (std::uint32_t a = 1; a < length; ++a) {
+        const std::uint32_t v = row[a];
+        std::uint32_t b = a;
+        for (; b > 0 && row[b - 1] > v; --b) row[b] = row[b - 1];
+        row[b] = v;
+      }
+    }
+    if (repeats_) {
+      run.count[k] = static_cast<std::uint32_t>(std::unique(row, row + length) - row);
+      std::copy(row, row + run.count[k], run.partner.begin() + static_cast<std::ptrdiff_t>(kept));
+      kept += run.count[k];
+    }
+    row += length;
+  }
+  if (repeats_) run.partner.resize(kept);
+}
+
+void CellSearch::merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run,
+                       std::vector<std::uint32_t>& all) const {
+  all.clear();
+  const std::uint32_t* row = run.partner.data();
+  auto g = gained.begin();
+  for (std::size_t k = 0; k < run.count.size(); ++k) {
+    const std::uint32_t length = run.count[k];
+    for (std::uint32_t a = 0; a < length; ++a) {
+      const std::uint64_t pair = static_cast<std::uint64_t>(first + k) << 32 | row[a];
+      for (; g != gained.end() && *g < pair; ++g, ++run.count[k]) all.push_back(static_cast<std::uint32_t>(*g));
+      if (g != gained.end() && *g == pair) ++g;
+      all.push_back(row[a]);
+    }
+    for (; g != gained.end() && *g >> 32 == first + k; ++g, ++run.count[k])
+      all.push_back(static_cast<std::uint32_t>(*g));
+    row += length;
+  }
+  run.partner.swap(all);
+}
+
+void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>& margin,
+                      const std::vector<std::uint32_t>& run_start) {
+  const std::size_t runs = run_start.size() - 1;
+  if (runs_.size() < runs) {
+    runs_.resize(runs);
+    foreign_.resize(runs);
+  }
+  if (p.sphere_count() == 0) return;
+  measure(p, wrap, margin);
+  bin(p, wrap, margin);
+  const View view{x_.data(),          y_.data(),       z_.data(),     reach_.data(),
+                  rank_.data(),       cell_start_.data(), cell_of_.data(), place_.data(),
+                  p.has_clumps ? p.owner.data() : nullptr, levels_.data(), static_cast<std::uint32_t>(levels_.size()), origin_, wrap, wrap.any()};
+  scratch_.resize(static_cast<std::size_t>(omp_get_max_threads()));
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t r = 0; r < runs; ++r) {
+    Scratch& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+    scratch.first = run_start[r];
+    runs_[r].count.assign(run_start[r + 1] - run_start[r], 0);
+    foreign_[r].clear();
+    Found found{scratch.pairs, foreign_[r], runs_[r].count.data(), scratch.first};
+    search(view, run_start[r], run_start[r + 1], found);
+    collect(found.used, scratch, runs_[r]);
+    std::sort(foreign_[r].begin(), foreign_[r].end());
+  }
+  // Pairs found from the sphere of higher rank belong to the run of the other.
+#pragma omp parallel for schedule(dynamic, 1)
+  for (std::size_t r = 0; r < runs; ++r) {
+    Scratch& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+    auto& gained = scratch.pairs;
+    gained.clear();
+    for (std::size_t from = r + 1; from < runs; ++from) {
+      const auto& all = foreign_[from];
+      const auto begin = std::lower_bound(all.begin(), all.end(), static_cast<std::uint64_t>(run_start[r]) << 32);
+      const auto end = std::lower_bound(begin, all.end(), static_cast<std::uint64_t>(run_start[r + 1]) << 32);
+      gained.insert(gained.end(), begin, end);
+    }
+    if (gained.empty()) continue;
+    std::sort(gained.begin(), gained.end());
+    if (repeats_) {
+      // The same pair may have been found from both its spheres.
+      gained.erase(std::unique(gained.begin(), gained.end()), gained.end());
+    }
+    merge(gained, run_start[r], runs_[r], scratch.next);
+  }
+}
+
+std::size_t CellSearch::memory_bytes() const {
+  std::size_t bytes = (cell_start_.capacity() + cell_of_.capacity() + place_.capacity() + rank_.capacity()) * 4;
+  bytes += (x_.capacity() + y_.capacity() + z_.capacity() + reach_.capacity()) * 8;
+  for (const auto& r : runs_) bytes += (r.count.capacity() + r.partner.capacity()) * 4;
+  for (const auto& f : foreign_) bytes += f.capacity() * 8;
+  for (const auto& s : scratch_) bytes += s.pairs.capacity() * 8 + s.next.capacity() * 4;
+  return bytes;
+}
+
+}  // namespace calx
