@@ -87,15 +87,16 @@ struct CellSearch::View {
 
 namespace {
 
-using Doubles = double __attribute__((vector_size(64)));
-using Bytes = std::int8_t __attribute__((vector_size(8)));
+using Doubles = double __attribute__((vector_size(32)));
+using Bits = std::int64_t __attribute__((vector_size(32)));
 
 struct Query {
-  double x, y, z, reach;
+  Doubles x, y, z, reach;  // each four times the same
 };
 
-/// Which of eight spheres from place b on are within reach, one bit each.
-__attribute__((always_inline)) inline std::uint32_t near_eight(const CellSearch::View& v, std::size_t b, const Query& q) {
+/// All bits of lane k are set where the sphere of place b + k is within reach.
+__attribute__((always_inline)) inline void near_four(const CellSearch::View& v, std::size_t b, const Query& q,
+                                                     Bits& near) {
   Doubles x, y, z, cut;
   std::memcpy(&x, v.x + b, sizeof x);
   std::memcpy(&y, v.y + b, sizeof y);
@@ -105,11 +106,21 @@ __attribute__((always_inline)) inline std::uint32_t near_eight(const CellSearch:
   y -= q.y;
   z -= q.z;
   cut += q.reach;
-  const Bytes bytes = __builtin_convertvector(x * x + y * y + z * z < cut * cut, Bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, &bytes, sizeof bits);
-  // The lowest bit of byte k becomes bit 56 + k.
-  return static_cast<std::uint32_t>((bits & 0x0101010101010101ull) * 0x0102040810204080ull >> 56);
+  near = x * x + y * y + z * z < cut * cut;
+}
+
+/// Adds bits `shift` to `shift` + 7 for the eight spheres from place b on.
+__attribute__((always_inline)) inline void near_eight(const CellSearch::View& v, std::size_t b, const Query& q,
+                                                      int shift, Bits& bits) {
+  Bits lower, upper;
+  near_four(v, b, q, lower);
+  near_four(v, b + 4, q, upper);
+  const std::int64_t one = std::int64_t{1} << shift;
+  bits |= (lower & Bits{one, one * 2, one * 4, one * 8}) | (upper & Bits{one * 16, one * 32, one * 64, one * 128});
+}
+
+__attribute__((always_inline)) inline std::uint64_t united(const Bits& b) {
+  return static_cast<std::uint64_t>((b[0] | b[2]) | (b[1] | b[3]));
 }
 
 /// Where pairs go.
@@ -146,11 +157,13 @@ __attribute__((always_inline)) inline void compare(const CellSearch::View& v, Fo
                                                    std::uint32_t end, const Query& q, std::uint32_t k,
                                                    std::uint32_t own, bool only_higher) {
   for (std::uint32_t b = begin; b < end; b += 8) {
-    std::uint32_t bits = near_eight(v, b, q);
+    Bits near{};
+    near_eight(v, b, q, 0, near);
+    std::uint64_t bits = united(near);
     if (end - b < 8) bits &= (1u << (end - b)) - 1;
     make_room(out);
     for (; bits; bits &= bits - 1) {
-      const std::uint32_t j = v.rank[b + static_cast<std::uint32_t>(__builtin_ctz(bits))];
+      const std::uint32_t j = v.rank[b + static_cast<std::uint32_t>(__builtin_ctzll(bits))];
       if (only_higher && j < k) continue;
       keep(v, out, k, own, j);
     }
@@ -161,8 +174,8 @@ __attribute__((always_inline)) inline void compare(const CellSearch::View& v, Fo
 __attribute__((always_inline)) inline void window(const CellSearch::View& v, const CellSearch::Level& g, Found& out,
                                                   const Query& q, std::uint32_t k, std::uint32_t own,
                                                   bool only_higher) {
-  const double far = q.reach + g.reach + kRoundingShare * g.cell;
-  const double at[3] = {q.x, q.y, q.z}, origin[3] = {v.origin.x, v.origin.y, v.origin.z};
+  const double far = q.reach[0] + g.reach + kRoundingShare * g.cell;
+  const double at[3] = {q.x[0], q.y[0], q.z[0]}, origin[3] = {v.origin.x, v.origin.y, v.origin.z};
   std::uint32_t first[3], last[3];
   for (int d = 0; d < 3; ++d) {
     first[d] = cell_coordinate(at[d] - far, origin[d], g.inverse);
@@ -189,8 +202,8 @@ __attribute__((always_inline)) inline void window(const CellSearch::View& v, con
       const double dy = gap(y, 1), rest = far * far - dz * dz - dy * dy;
       if (rest < 0) continue;
       const double chord = __builtin_sqrt(rest) + kRoundingShare * g.cell;
-      std::uint32_t x0 = cell_coordinate(q.x - chord, origin[0], g.inverse);
-      std::uint32_t x1 = cell_coordinate(q.x + chord, origin[0], g.inverse);
+      std::uint32_t x0 = cell_coordinate(at[0] - chord, origin[0], g.inverse);
+      std::uint32_t x1 = cell_coordinate(at[0] + chord, origin[0], g.inverse);
       if (x1 < first[0] || x0 > last[0]) continue;
       x0 = x0 > first[0] ? x0 : first[0];
       x1 = x1 < last[0] ? x1 : last[0];
@@ -214,18 +227,21 @@ __attribute__((always_inline)) inline void later_cells(const CellSearch::View& v
   const std::uint32_t cell = v.cell_of[k], sy = g.stride[1], sz = g.stride[2];
   const std::uint32_t rows[4] = {cell + sy - 1, cell + sz - sy - 1, cell + sz - 1, cell + sz + sy - 1};
   std::uint32_t base[5];
-  std::uint64_t bits = 0;
+  Bits near{};
   base[0] = v.place[k] + 1;
   const std::uint32_t own_end = start[cell + 2], own_count = own_end - base[0];
-  bits = near_eight(v, base[0], q) & ((1u << (own_count < 8 ? own_count : 8)) - 1);
+  near_eight(v, base[0], q, 0, near);
+  std::uint64_t valid = (1u << (own_count < 8 ? own_count : 8)) - 1;
   if (own_count > 8) compare(v, out, base[0] + 8, own_end, q, k, own, false);
+#pragma GCC unroll 4
   for (int r = 0; r < 4; ++r) {
     const std::uint32_t c = rows[r] & g.mask, begin = start[c], end = start[c + 3], count = end - begin;
     base[r + 1] = begin;
-    const std::uint64_t row = near_eight(v, begin, q) & ((1u << (count < 8 ? count : 8)) - 1);
-    bits |= row << (8 * (r + 1));
+    near_eight(v, begin, q, 8 * (r + 1), near);
+    valid |= ((std::uint64_t{1} << (count < 8 ? count : 8)) - 1) << (8 * (r + 1));
     if (count > 8) compare(v, out, begin + 8, end, q, k, own, false);
   }
+  std::uint64_t bits = united(near) & valid;
   make_room(out);
   for (; bits; bits &= bits - 1) {
     const int bit = __builtin_ctzll(bits);
@@ -237,21 +253,23 @@ __attribute__((always_inline)) inline void later_cells(const CellSearch::View& v
 CALX_HOT void search(const CellSearch::View& v, std::uint32_t first, std::uint32_t last, Found& out) {
   for (std::uint32_t k = first; k < last; ++k) {
     const std::uint32_t p = v.place[k], own = v.owner ? v.owner[k] : k;
-    const Query q{v.x[p], v.y[p], v.z[p], v.reach[p]};
+    const double x = v.x[p], y = v.y[p], z = v.z[p], reach = v.reach[p];
+    const Query q{{x, x, x, x}, {y, y, y, y}, {z, z, z, z}, {reach, reach, reach, reach}};
     std::uint32_t level = 0;
     while (p >= v.levels[level].last) ++level;
     later_cells(v, v.levels[level], out, q, k, own);
     if (level == 0 && !v.wraps) continue;
     for (std::uint32_t g = level + 1; g-- > 0;) {
-      const double far = q.reach + v.levels[g].reach;
+      const double far = reach + v.levels[g].reach;
       // Images of q that can reach the box: shift by -1, 0, 1 lengths along each direction.
       int from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
       if (v.wraps)
         for (int d = 0; d < 3; ++d) {
           if (!v.wrap.periodic[static_cast<std::size_t>(d)]) continue;
-          const double x = d == 0 ? q.x : d == 1 ? q.y : q.z, lo = v.wrap.lo[d], hi = lo + v.wrap.length[d];
-          if (hi - x < far * (1 + kRoundingShare)) from[d] = -1;
-          if (x - lo < far * (1 + kRoundingShare)) to[d] = 1;
+          const double at = d == 0 ? x : d == 1 ? y : z;
+          const double below = at - v.wrap.lo[d];
+          if (v.wrap.length[d] - below < far * (1 + kRoundingShare)) from[d] = -1;
+          if (below < far * (1 + kRoundingShare)) to[d] = 1;
         }
       for (int c = from[2]; c <= to[2]; ++c)
         for (int b = from[1]; b <= to[1]; ++b)
@@ -433,7 +451,7 @@ void CellSearch::bin(const Particles& p, const Wrap& wrap, const Column<double>&
   }
 }
 
-void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) const {
+void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) {
   const std::size_t n = run.count.size();
   // Rows start where those before end; next moves to the end of each.
   auto& next = scratch.next;
@@ -448,7 +466,6 @@ void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) const {
   for (std::size_t e = 0; e < found; ++e)
     run.partner[next[(scratch.pairs[e] >> 32) - first]++] = static_cast<std::uint32_t>(scratch.pairs[e]);
   std::uint32_t* row = run.partner.data();
-  std::size_t kept = 0;
   for (std::size_t k = 0; k < n; ++k) {
     const std::uint32_t length = run.count[k];
     if (length > 24) {
@@ -461,34 +478,40 @@ void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) const {
         row[b] = v;
       }
     }
-    if (repeats_) {
-      run.count[k] = static_cast<std::uint32_t>(std::unique(row, row + length) - row);
-      std::copy(row, row + run.count[k], run.partner.begin() + static_cast<std::ptrdiff_t>(kept));
-      kept += run.count[k];
-    }
     row += length;
   }
-  if (repeats_) run.partner.resize(kept);
 }
 
-void CellSearch::merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run,
-                       std::vector<std::uint32_t>& all) const {
-  all.clear();
-  const std::uint32_t* row = run.partner.data();
-  auto g = gained.begin();
-  for (std::size_t k = 0; k < run.count.size(); ++k) {
-    const std::uint32_t length = run.count[k];
-    for (std::uint32_t a = 0; a < length; ++a) {
-      const std::uint64_t pair = static_cast<std::uint64_t>(first + k) << 32 | row[a];
-      for (; g != gained.end() && *g < pair; ++g, ++run.count[k]) all.push_back(static_cast<std::uint32_t>(*g));
-      if (g != gained.end() && *g == pair) ++g;
-      all.push_back(row[a]);
+void CellSearch::merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run) {
+  // From the last row to the first, so that each partner moves once: those from `end` on have moved up to `to`.
+  std::size_t end = run.partner.size(), to = end + gained.size(), row_end = end, g = gained.size();
+  run.partner.resize(to);
+  const auto partner = run.partner.begin();
+  auto at = [&](std::size_t k) { return partner + static_cast<std::ptrdiff_t>(k); };
+  for (std::size_t k = run.count.size(); g > 0; --k) {
+    const std::size_t row = row_end - run.count[k - 1];
+    for (; g > 0 && gained[g - 1] >> 32 == first + k - 1; --g, ++run.count[k - 1]) {
+      const auto j = static_cast<std::uint32_t>(gained[g - 1]);
+      const auto above = std::lower_bound(at(row), at(std::min(row_end, end)), j);
+      std::copy_backward(above, at(end), at(to));
+      to -= static_cast<std::size_t>(at(end) - above) + 1;
+      end = static_cast<std::size_t>(above - partner);
+      *at(to) = j;
     }
-    for (; g != gained.end() && *g >> 32 == first + k; ++g, ++run.count[k])
-      all.push_back(static_cast<std::uint32_t>(*g));
-    row += length;
+    row_end = row;
   }
-  run.partner.swap(all);
+}
+
+void CellSearch::drop_repeats(Run& run) {
+  auto row = run.partner.begin(), to = row;
+  for (auto& count : run.count) {
+    const auto row_end = row + count;
+    const auto end = std::unique(row, row_end);
+    count = static_cast<std::uint32_t>(end - row);
+    to = std::copy(row, end, to);
+    row = row_end;
+  }
+  run.partner.erase(to, run.partner.end());
 }
 
 void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>& margin,
@@ -528,13 +551,9 @@ void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>
       const auto end = std::lower_bound(begin, all.end(), static_cast<std::uint64_t>(run_start[r + 1]) << 32);
       gained.insert(gained.end(), begin, end);
     }
-    if (gained.empty()) continue;
     std::sort(gained.begin(), gained.end());
-    if (repeats_) {
-      // The same pair may have been found from both its spheres.
-      gained.erase(std::unique(gained.begin(), gained.end()), gained.end());
-    }
-    merge(gained, run_start[r], runs_[r], scratch.next);
+    merge(gained, run_start[r], runs_[r]);
+    if (repeats_) drop_repeats(runs_[r]);
   }
 }
 

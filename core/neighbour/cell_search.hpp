@@ -54,9 +54,9 @@ class CellSearch {
   };
   void measure(const Particles& particles, const Wrap& wrap, const Column<double>& margin);
   void bin(const Particles& particles, const Wrap& wrap, const Column<double>& margin);
-  void collect(std::size_t found, Scratch& scratch, Run& run) const;
-  void merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run,
-             std::vector<std::uint32_t>& all) const;
+  static void collect(std::size_t found, Scratch& scratch, Run& run);
+  static void merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run);
+  static void drop_repeats(Run& run);
 
   std::vector<Level> levels_;  // rising reach
   Vec3 origin_;                // m, of cell coordinates
