@@ -94,6 +94,11 @@ struct Query {
   Doubles x, y, z, reach;  // each four times the same
 };
 
+__attribute__((always_inline)) inline Query query(const CellSearch::View& v, std::uint32_t p) {
+  const double x = v.x[p], y = v.y[p], z = v.z[p], r = v.reach[p];
+  return {Doubles{x, x, x, x}, Doubles{y, y, y, y}, Doubles{z, z, z, z}, Doubles{r, r, r, r}};
+}
+
 /// All bits of lane k are set where the sphere of place b + k is within reach.
 __attribute__((always_inline)) inline void near_four(const CellSearch::View& v, std::size_t b, const Query& q,
                                                      Bits& near) {
@@ -102,10 +107,10 @@ __attribute__((always_inline)) inline void near_four(const CellSearch::View& v, 
   std::memcpy(&y, v.y + b, sizeof y);
   std::memcpy(&z, v.z + b, sizeof z);
   std::memcpy(&cut, v.reach + b, sizeof cut);
-  x -= q.x;
-  y -= q.y;
-  z -= q.z;
-  cut += q.reach;
+  x = q.x - x;
+  y = q.y - y;
+  z = q.z - z;
+  cut = q.reach + cut;
   near = x * x + y * y + z * z < cut * cut;
 }
 
@@ -123,21 +128,28 @@ __attribute__((always_inline)) inline std::uint64_t united(const Bits& b) {
   return static_cast<std::uint64_t>((b[0] | b[2]) | (b[1] | b[3]));
 }
 
-/// Where pairs go.
+/// Where pairs go: lower rank << 32 | higher.
 struct Found {
-  std::vector<std::uint64_t>& pairs;  // the first `used` are set
-  std::vector<std::uint64_t>& foreign;
-  std::uint32_t* count;
+  std::vector<std::uint64_t>& pairs;
+  std::vector<std::uint64_t>& foreign;  // of a lower sphere before the run
+  std::uint32_t* count;                 // pairs of each lower sphere, from `first` on
   std::uint32_t first;
-  std::size_t used = 0;
+  std::uint64_t *at, *limit;  // next free entry, and the last before which there is room for a call of keep_all
 };
 
-/// Pairs that may be kept before the next call of make_room().
-constexpr std::size_t kRoom = 64;
-__attribute__((noinline)) void grow(std::vector<std::uint64_t>& pairs) { pairs.resize(2 * pairs.size() + 4 * kRoom); }
-__attribute__((always_inline)) inline void make_room(Found& out) {
-  if (out.used + kRoom > out.pairs.size()) grow(out.pairs);
+/// Pairs kept between two calls of make_room, at most.
+constexpr std::size_t kRoom = 40;
+__attribute__((noinline)) std::uint64_t* grow(std::vector<std::uint64_t>& pairs, std::uint64_t* at) {
+  const auto used = at - pairs.data();
+  pairs.resize(2 * pairs.size() + 4 * kRoom);
+  return pairs.data() + used;
 }
+__attribute__((always_inline)) inline void make_room(Found& out) {
+  if (out.at < out.limit) return;
+  out.at = grow(out.pairs, out.at);
+  out.limit = out.pairs.data() + (out.pairs.size() - kRoom);
+}
+__attribute__((noinline)) void add(std::vector<std::uint64_t>& foreign, std::uint64_t pair) { foreign.push_back(pair); }
 
 __attribute__((always_inline)) inline void keep(const CellSearch::View& v, Found& out, std::uint32_t k,
                                                 std::uint32_t own, std::uint32_t j) {
@@ -145,11 +157,11 @@ __attribute__((always_inline)) inline void keep(const CellSearch::View& v, Found
   const std::uint32_t lo = j < k ? j : k, hi = j < k ? k : j;
   const std::uint64_t pair = static_cast<std::uint64_t>(lo) << 32 | hi;
   if (lo < out.first) {
-    out.foreign.push_back(pair);
+    add(out.foreign, pair);
     return;
   }
   ++out.count[lo - out.first];
-  out.pairs[out.used++] = pair;
+  *out.at++ = pair;
 }
 
 /// Places begin .. end against q. only_higher: partners of lower rank find k themselves.
@@ -226,62 +238,80 @@ __attribute__((always_inline)) inline void later_cells(const CellSearch::View& v
   const std::uint32_t* start = v.cell_start + g.start;
   const std::uint32_t cell = v.cell_of[k], sy = g.stride[1], sz = g.stride[2];
   const std::uint32_t rows[4] = {cell + sy - 1, cell + sz - sy - 1, cell + sz - 1, cell + sz + sy - 1};
-  std::uint32_t base[5];
+  std::uint32_t begin[5], end[5];
+  begin[0] = v.place[k] + 1;
+  end[0] = start[cell + 2];
   Bits near{};
-  base[0] = v.place[k] + 1;
-  const std::uint32_t own_end = start[cell + 2], own_count = own_end - base[0];
-  near_eight(v, base[0], q, 0, near);
-  std::uint64_t valid = (1u << (own_count < 8 ? own_count : 8)) - 1;
-  if (own_count > 8) compare(v, out, base[0] + 8, own_end, q, k, own, false);
+  near_eight(v, begin[0], q, 0, near);
+  std::int32_t left = 8 - static_cast<std::int32_t>(end[0] - begin[0]);
 #pragma GCC unroll 4
-  for (int r = 0; r < 4; ++r) {
-    const std::uint32_t c = rows[r] & g.mask, begin = start[c], end = start[c + 3], count = end - begin;
-    base[r + 1] = begin;
-    near_eight(v, begin, q, 8 * (r + 1), near);
-    valid |= ((std::uint64_t{1} << (count < 8 ? count : 8)) - 1) << (8 * (r + 1));
-    if (count > 8) compare(v, out, begin + 8, end, q, k, own, false);
+  for (int r = 1; r < 5; ++r) {
+    const std::uint32_t c = rows[r - 1] & g.mask;
+    begin[r] = start[c];
+    end[r] = start[c + 3];
+    near_eight(v, begin[r], q, 8 * r, near);
+    left |= 8 - static_cast<std::int32_t>(end[r] - begin[r]);
   }
-  std::uint64_t bits = united(near) & valid;
   make_room(out);
-  for (; bits; bits &= bits - 1) {
+  for (std::uint64_t bits = united(near); bits; bits &= bits - 1) {
     const int bit = __builtin_ctzll(bits);
-    keep(v, out, k, own, v.rank[base[bit >> 3] + static_cast<std::uint32_t>(bit & 7)]);
+    const std::uint32_t at = begin[bit >> 3] + static_cast<std::uint32_t>(bit & 7);
+    if (at < end[bit >> 3]) keep(v, out, k, own, v.rank[at]);
   }
+  // Negative: a row of more than eight.
+  if (left < 0)
+    for (int r = 0; r < 5; ++r)
+      if (end[r] - begin[r] > 8) compare(v, out, begin[r] + 8, end[r], q, k, own, false);
 }
 
-/// Spheres first .. last with all that stand later in their level and all of finer levels.
-CALX_HOT void search(const CellSearch::View& v, std::uint32_t first, std::uint32_t last, Found& out) {
+/// Spheres first .. last with all that stand later in their level.
+CALX_HOT void search_own_level(const CellSearch::View& view, std::uint32_t first, std::uint32_t last, Found& to) {
+  // Copies, which no store below can change.
+  const CellSearch::View v = view;
+  Found out = to;
   for (std::uint32_t k = first; k < last; ++k) {
     const std::uint32_t p = v.place[k], own = v.owner ? v.owner[k] : k;
-    const double x = v.x[p], y = v.y[p], z = v.z[p], reach = v.reach[p];
-    const Query q{{x, x, x, x}, {y, y, y, y}, {z, z, z, z}, {reach, reach, reach, reach}};
+    const CellSearch::Level* g = v.levels;
+    while (p >= g->last) ++g;
+    later_cells(v, *g, out, query(v, p), k, own);
+  }
+  to.at = out.at;
+  to.limit = out.limit;
+}
+
+/// Spheres first .. last with those of finer levels, and with periodic images of their own.
+CALX_HOT void search_windows(const CellSearch::View& view, std::uint32_t first, std::uint32_t last, Found& to) {
+  const CellSearch::View v = view;
+  Found out = to;
+  for (std::uint32_t k = first; k < last; ++k) {
+    const std::uint32_t p = v.place[k], own = v.owner ? v.owner[k] : k;
     std::uint32_t level = 0;
     while (p >= v.levels[level].last) ++level;
-    later_cells(v, v.levels[level], out, q, k, own);
-    if (level == 0 && !v.wraps) continue;
-    for (std::uint32_t g = level + 1; g-- > 0;) {
-      const double far = reach + v.levels[g].reach;
-      // Images of q that can reach the box: shift by -1, 0, 1 lengths along each direction.
-      int from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
-      if (v.wraps)
-        for (int d = 0; d < 3; ++d) {
-          if (!v.wrap.periodic[static_cast<std::size_t>(d)]) continue;
-          const double at = d == 0 ? x : d == 1 ? y : z;
-          const double below = at - v.wrap.lo[d];
-          if (v.wrap.length[d] - below < far * (1 + kRoundingShare)) from[d] = -1;
-          if (below < far * (1 + kRoundingShare)) to[d] = 1;
-        }
-      for (int c = from[2]; c <= to[2]; ++c)
-        for (int b = from[1]; b <= to[1]; ++b)
-          for (int a = from[0]; a <= to[0]; ++a) {
-            const bool image = a || b || c;
-            if (g == level && !image) continue;
-            const Query image_of{q.x + a * v.wrap.length.x, q.y + b * v.wrap.length.y, q.z + c * v.wrap.length.z,
-                                 q.reach};
-            window(v, v.levels[g], out, image_of, k, own, g == level);
+    const double at[3] = {v.x[p], v.y[p], v.z[p]};
+    for (std::uint32_t g = v.wraps ? level + 1 : level; g-- > 0;) {
+      const double far = (v.reach[p] + v.levels[g].reach) * (1 + kRoundingShare);
+      // Images that can reach the box: shifts by -1, 0, 1 lengths along each direction.
+      int lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
+      for (int d = 0; d < 3; ++d) {
+        if (!v.wrap.periodic[static_cast<std::size_t>(d)]) continue;
+        const double below = at[d] - v.wrap.lo[d];
+        if (v.wrap.length[d] - below < far) lower[d] = -1;
+        if (below < far) upper[d] = 1;
+      }
+      for (int c = lower[2]; c <= upper[2]; ++c)
+        for (int b = lower[1]; b <= upper[1]; ++b)
+          for (int a = lower[0]; a <= upper[0]; ++a) {
+            if (g == level && !a && !b && !c) continue;
+            Query q = query(v, p);
+            q.x += a * v.wrap.length.x;
+            q.y += b * v.wrap.length.y;
+            q.z += c * v.wrap.length.z;
+            window(v, v.levels[g], out, q, k, own, g == level);
           }
     }
   }
+  to.at = out.at;
+  to.limit = out.limit;
 }
 
 }  // namespace
@@ -534,9 +564,12 @@ void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>
     scratch.first = run_start[r];
     runs_[r].count.assign(run_start[r + 1] - run_start[r], 0);
     foreign_[r].clear();
-    Found found{scratch.pairs, foreign_[r], runs_[r].count.data(), scratch.first};
-    search(view, run_start[r], run_start[r + 1], found);
-    collect(found.used, scratch, runs_[r]);
+    if (scratch.pairs.size() < kRoom) scratch.pairs.resize(kRoom);
+    Found found{scratch.pairs, foreign_[r], runs_[r].count.data(), scratch.first, scratch.pairs.data(),
+                scratch.pairs.data() + (scratch.pairs.size() - kRoom)};
+    search_own_level(view, run_start[r], run_start[r + 1], found);
+    if (levels_.size() > 1 || view.wraps) search_windows(view, run_start[r], run_start[r + 1], found);
+    collect(static_cast<std::size_t>(found.at - scratch.pairs.data()), scratch, runs_[r]);
     std::sort(foreign_[r].begin(), foreign_[r].end());
   }
   // Pairs found from the sphere of higher rank belong to the run of the other.
