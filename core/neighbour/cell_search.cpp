@@ -114,14 +114,13 @@ __attribute__((always_inline)) inline void near_four(const CellSearch::View& v, 
   near = x * x + y * y + z * z < cut * cut;
 }
 
-/// Adds bits `shift` to `shift` + 7 for the eight spheres from place b on.
+/// Sets bits `shift` to `shift` + 7 for the eight spheres from place b on.
 __attribute__((always_inline)) inline void near_eight(const CellSearch::View& v, std::size_t b, const Query& q,
                                                       int shift, Bits& bits) {
   Bits lower, upper;
   near_four(v, b, q, lower);
   near_four(v, b + 4, q, upper);
-  const std::int64_t one = std::int64_t{1} << shift;
-  bits |= (lower & Bits{one, one * 2, one * 4, one * 8}) | (upper & Bits{one * 16, one * 32, one * 64, one * 128});
+  bits |= ((lower & Bits{1, 2, 4, 8}) | (upper & Bits{16, 32, 64, 128})) << shift;
 }
 
 __attribute__((always_inline)) inline std::uint64_t united(const Bits& b) {
@@ -138,7 +137,7 @@ struct Found {
 };
 
 /// Pairs kept between two calls of make_room, at most.
-constexpr std::size_t kRoom = 40;
+constexpr std::size_t kRoom = 64;
 __attribute__((noinline)) std::uint64_t* grow(std::vector<std::uint64_t>& pairs, std::uint64_t* at) {
   const auto used = at - pairs.data();
   pairs.resize(2 * pairs.size() + 4 * kRoom);
@@ -168,17 +167,17 @@ __attribute__((always_inline)) inline void keep(const CellSearch::View& v, Found
 __attribute__((always_inline)) inline void compare(const CellSearch::View& v, Found& out, std::uint32_t begin,
                                                    std::uint32_t end, const Query& q, std::uint32_t k,
                                                    std::uint32_t own, bool only_higher) {
-  for (std::uint32_t b = begin; b < end; b += 8) {
+  while (begin < end) {
+    const std::uint32_t n = end - begin < 64 ? end - begin : 64;
     Bits near{};
-    near_eight(v, b, q, 0, near);
-    std::uint64_t bits = united(near);
-    if (end - b < 8) bits &= (1u << (end - b)) - 1;
+    for (std::uint32_t b = 0; b < n; b += 8) near_eight(v, begin + b, q, static_cast<int>(b), near);
     make_room(out);
-    for (; bits; bits &= bits - 1) {
-      const std::uint32_t j = v.rank[b + static_cast<std::uint32_t>(__builtin_ctzll(bits))];
+    for (std::uint64_t bits = united(near) & (~std::uint64_t{0} >> (64 - n)); bits; bits &= bits - 1) {
+      const std::uint32_t j = v.rank[begin + static_cast<std::uint32_t>(__builtin_ctzll(bits))];
       if (only_higher && j < k) continue;
       keep(v, out, k, own, j);
     }
+    begin += n;
   }
 }
 
@@ -186,42 +185,47 @@ __attribute__((always_inline)) inline void compare(const CellSearch::View& v, Fo
 __attribute__((always_inline)) inline void window(const CellSearch::View& v, const CellSearch::Level& g, Found& out,
                                                   const Query& q, std::uint32_t k, std::uint32_t own,
                                                   bool only_higher) {
-  const double far = q.reach[0] + g.reach + kRoundingShare * g.cell;
-  const double at[3] = {q.x[0], q.y[0], q.z[0]}, origin[3] = {v.origin.x, v.origin.y, v.origin.z};
-  std::uint32_t first[3], last[3];
+  // In cells, with slack for the rounding of both spheres' coordinates.
+  const double far = (q.reach[0] + g.reach) * g.inverse + kRoundingShare;
+  const double at[3] = {(q.x[0] - v.origin.x) * g.inverse + kHalfRange, (q.y[0] - v.origin.y) * g.inverse + kHalfRange,
+                        (q.z[0] - v.origin.z) * g.inverse + kHalfRange};
+  std::uint32_t first[3] = {}, last[3] = {};
+  bool ranged = true;
   for (int d = 0; d < 3; ++d) {
-    first[d] = cell_coordinate(at[d] - far, origin[d], g.inverse);
-    last[d] = cell_coordinate(at[d] + far, origin[d], g.inverse);
+    // Spheres beyond the range of coordinates stand in its outermost cells.
+    if (!(at[d] - far >= 1 && at[d] + far < 2 * kHalfRange)) {
+      ranged = false;
+      continue;
+    }
+    first[d] = static_cast<std::uint32_t>(at[d] - far);
+    last[d] = static_cast<std::uint32_t>(at[d] + far);
     if (last[d] < g.low[d] || first[d] > g.high[d]) return;
     first[d] = first[d] > g.low[d] ? first[d] : g.low[d];
     last[d] = last[d] < g.high[d] ? last[d] : g.high[d];
   }
-  const double rows = (1.0 + last[1] - first[1]) * (1.0 + last[2] - first[2]);
-  if (rows * 8 > g.last - g.first) {
+  if (!ranged || (1.0 + last[1] - first[1]) * (1.0 + last[2] - first[2]) * 8 > g.last - g.first) {
     compare(v, out, g.first, g.last, q, k, own, only_higher);
     return;
   }
   const std::uint32_t* start = v.cell_start + g.start;
-  // Distance from the query to the layer or row c; the outermost reach as far as there are spheres.
-  auto gap = [&](std::uint32_t c, int d) {
-    if (c == g.low[d] || c == g.high[d]) return 0.0;
-    const double lower = origin[d] + (static_cast<double>(c) - kHalfRange) * g.cell - at[d];
-    return lower > 0 ? lower : lower + g.cell < 0 ? -(lower + g.cell) : 0;
+  const double first_x = first[0], last_x = last[0];
+  auto gap2 = [](double c, double x) {
+    const double below = c - x, above = x - 1 - c, gap = below > above ? below : above;
+    return gap > 0 ? gap * gap : 0;
   };
   for (std::uint32_t z = first[2]; z <= last[2]; ++z) {
-    const double dz = gap(z, 2);
+    const double rest_z = far * far - gap2(z, at[2]);
+    const std::uint32_t layer = (z - g.low[2]) * g.stride[2] - g.low[0];
     for (std::uint32_t y = first[1]; y <= last[1]; ++y) {
-      const double dy = gap(y, 1), rest = far * far - dz * dz - dy * dy;
+      const double rest = rest_z - gap2(y, at[1]);
       if (rest < 0) continue;
-      const double chord = __builtin_sqrt(rest) + kRoundingShare * g.cell;
-      std::uint32_t x0 = cell_coordinate(at[0] - chord, origin[0], g.inverse);
-      std::uint32_t x1 = cell_coordinate(at[0] + chord, origin[0], g.inverse);
-      if (x1 < first[0] || x0 > last[0]) continue;
-      x0 = x0 > first[0] ? x0 : first[0];
-      x1 = x1 < last[0] ? x1 : last[0];
-      std::uint32_t cell = (x0 - g.low[0]) * g.stride[0] + (y - g.low[1]) * g.stride[1] + (z - g.low[2]) * g.stride[2];
+      const double chord = __builtin_sqrt(rest) + kRoundingShare;
+      const auto from = static_cast<std::uint32_t>(at[0] - chord > first_x ? at[0] - chord : first_x);
+      const auto to = static_cast<std::uint32_t>(at[0] + chord < last_x ? at[0] + chord : last_x);
+      if (to < from) continue;
+      std::uint32_t cell = layer + (y - g.low[1]) * g.stride[1] + from;
       // A row may run over the end of a folded table.
-      for (std::uint32_t left = x1 - x0 + 1; left > 0;) {
+      for (std::uint32_t left = to - from + 1; left > 0;) {
         cell &= g.mask;
         const std::uint32_t part = left < g.mask + 1 - cell ? left : g.mask + 1 - cell;
         compare(v, out, start[cell], start[cell + part], q, k, own, only_higher);
