@@ -22,8 +22,9 @@ ReachClasses::ReachClasses(double smallest, double largest) : first_(key(smalles
 namespace {
 
 // Instructions, counted on x86-64-v3; only their ratios matter.
-constexpr double kRow = 12, kEight = 20;  // for a row of cells; for eight comparisons of a row
-constexpr double kLevel = 5000;           // for a grid as such
+constexpr double kRow = 20, kWindowRow = 90;  // for a row of the own level; of a finer one
+constexpr double kEight = 33;                 // for eight comparisons of a row
+constexpr double kLevel = 5000;               // for a grid as such
 
 double tests(double candidates) { return kEight * std::max(1.0, candidates / 8 + 0.5); }
 
@@ -45,11 +46,11 @@ std::vector<double> choose_levels(const std::vector<ReachClasses::Class>& classe
     for (std::size_t a = b; a-- > 0;) {
       count += static_cast<double>(c[a].count);
       const double reach = c[b - 1].largest, cell = 2 * reach, density = count / volume;
-      double cost = kLevel + count * 4.5 * (kRow + tests(3 * density * cell * cell * cell));
+      double cost = kLevel + count * 5 * (kRow + tests(3 * density * cell * cell * cell));
       for (std::size_t k = b; k < n; ++k) {
         const double far = reach + c[k].largest, cells = 2 * far / cell + 1;
         const double rows = 0.79 * cells * cells;
-        const double rowwise = rows * (2 * kRow + tests(0.7 * density * cells * cell * cell * cell));
+        const double rowwise = rows * (kWindowRow + tests(0.7 * density * cells * cell * cell * cell));
         cost += static_cast<double>(c[k].count) * std::min(rowwise, tests(count));
       }
       if (a + 1 == b || best[a] + cost < best[b]) {

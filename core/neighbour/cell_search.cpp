@@ -174,7 +174,7 @@ __attribute__((always_inline)) inline void compare(const CellSearch::View& v, Fo
     make_room(out);
     for (std::uint64_t bits = united(near) & (~std::uint64_t{0} >> (64 - n)); bits; bits &= bits - 1) {
       const std::uint32_t j = v.rank[begin + static_cast<std::uint32_t>(__builtin_ctzll(bits))];
-      if (only_higher && j < k) continue;
+      if (only_higher && j <= k) continue;
       keep(v, out, k, own, j);
     }
     begin += n;
