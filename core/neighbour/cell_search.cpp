@@ -22,28 +22,110 @@ constexpr std::uint64_t kFewestCells = 1024;
 /// Spheres below which threads do not pay.
 constexpr std::size_t kParallel = 4096;
 
-/// Rises with x over all numbers; neighbours of one cell width apart differ by at most one.
-inline std::uint32_t cell_coordinate(double x, double origin, double inverse) {
-  double c = (x - origin) * inverse;
-  c = c < kHalfRange ? c : kHalfRange;
-  c = c > -kHalfRange ? c : -kHalfRange;
-  return static_cast<std::uint32_t>(static_cast<std::int32_t>(c + kHalfRange));
+using Doubles = double __attribute__((vector_size(32)));
+using Bits = std::int64_t __attribute__((vector_size(32)));
+using Signed = std::int32_t __attribute__((vector_size(16)));
+using Unsigned = std::uint32_t __attribute__((vector_size(16)));
+
+/// Cell coordinates of a position, the fourth of no meaning. Each rises with its coordinate over all numbers; points
+/// less than a cell apart differ by one at most.
+__attribute__((always_inline)) inline void cell_coordinates(const Doubles& x, const Doubles& origin, double inverse,
+                                                            Unsigned& cell) {
+  Doubles c = (x - origin) * inverse;
+  constexpr double h = kHalfRange;
+  c = c < h ? c : Doubles{h, h, h, h};
+  c = c > -h ? c : Doubles{-h, -h, -h, -h};
+  cell = (Unsigned)__builtin_convertvector(c + h, Signed);
 }
 
-inline std::uint32_t cell_of(const CellSearch::Level& g, const Vec3& origin, const Vec3& x) {
-  return ((cell_coordinate(x.x, origin.x, g.inverse) - g.low[0]) * g.stride[0] +
-          (cell_coordinate(x.y, origin.y, g.inverse) - g.low[1]) * g.stride[1] +
-          (cell_coordinate(x.z, origin.z, g.inverse) - g.low[2]) * g.stride[2]) &
-         g.mask;
-}
-
-inline Vec3 inside(const Wrap& wrap, bool wraps, const Record& s) {
-  if (!wraps) return position(s);
-  Vec3 x = position(s);
+/// Position of a sphere, in the box along periodic directions, and a fourth value.
+__attribute__((always_inline)) inline void load_inside(const Wrap& wrap, bool wraps, const Record& s, Doubles& x) {
+  std::memcpy(&x, &s.x, sizeof x);
+  if (!wraps) return;
   for (int k = 0; k < 3; ++k)
     if (wrap.periodic[static_cast<std::size_t>(k)]) x[k] = wrap.inside(x[k], k);
-  return x;
 }
+
+/// Spheres as they come: position, radius and margin.
+struct Spheres {
+  const Record* s;
+  const std::uint32_t* owner;  // null: each its own
+  const double* margin;
+  Wrap wrap;
+  bool wraps;
+  double reach(std::size_t k) const { return s[k].r + margin[owner ? owner[k] : k]; }
+};
+
+struct Extent {
+  double low[4] = {1e300, 1e300, 1e300, 1e300}, high[4] = {-1e300, -1e300, -1e300, -1e300};  // m; of three each
+  double smallest = 1e300, largest = 0;                                                      // reach, m
+  void add(const Extent& b) {
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], b.low[d]);
+      high[d] = std::max(high[d], b.high[d]);
+    }
+    smallest = std::min(smallest, b.smallest);
+    largest = std::max(largest, b.largest);
+  }
+};
+
+CALX_HOT void measure_extent(const Spheres& all, std::size_t first, std::size_t last, Extent& out) {
+  const Spheres v = all;
+  Extent e;
+  Doubles low, high, x;
+  std::memcpy(&low, e.low, sizeof low);
+  std::memcpy(&high, e.high, sizeof high);
+  for (std::size_t k = first; k < last; ++k) {
+    load_inside(v.wrap, v.wraps, v.s[k], x);
+    low = x < low ? x : low;
+    high = x > high ? x : high;
+    const double reach = v.reach(k);
+    e.smallest = reach < e.smallest ? reach : e.smallest;
+    e.largest = reach > e.largest ? reach : e.largest;
+  }
+  std::memcpy(e.low, &low, sizeof low);
+  std::memcpy(e.high, &high, sizeof high);
+  out = e;
+}
+
+/// Cell of each sphere in the tables of all levels, and how many were in it before.
+CALX_HOT void count_cells(const Spheres& all, const CellSearch::Level* levels, const Vec3& centre, std::size_t first,
+                          std::size_t last, bool alone, std::uint32_t* cell_start, std::uint32_t* cell_of,
+                          std::uint32_t* number) {
+  const Spheres v = all;
+  const Doubles origin{centre.x, centre.y, centre.z, 0};
+  for (std::size_t k = first; k < last; ++k) {
+    const double reach = v.reach(k);
+    const CellSearch::Level* g = levels;
+    while (reach > g->reach) ++g;
+    Doubles x;
+    Unsigned cell, low, stride;
+    load_inside(v.wrap, v.wraps, v.s[k], x);
+    cell_coordinates(x, origin, g->inverse, cell);
+    std::memcpy(&low, g->low, sizeof low);
+    std::memcpy(&stride, g->stride, sizeof stride);
+    cell = (cell - low) * stride;
+    const std::uint32_t at = g->start + ((cell[0] + cell[1] + cell[2]) & g->mask);
+    cell_of[k] = at;
+    if (alone) {
+      number[k] = cell_start[at]++;
+    } else {
+      std::uint32_t before;
+#pragma omp atomic capture
+      before = cell_start[at]++;
+      number[k] = before;
+    }
+  }
+}
+
+/// Calls work(block, first, last) for equal parts of n spheres, one for each thread.
+template <class Work>
+void in_blocks(std::size_t n, std::size_t blocks, Work work) {
+#pragma omp parallel for schedule(static) if (blocks > 1)
+  for (std::size_t b = 0; b < blocks; ++b) work(b, n * b / blocks, n * (b + 1) / blocks);
+}
+
+std::size_t blocks_for(std::size_t n) { return n < kParallel ? 1 : static_cast<std::size_t>(omp_get_max_threads()); }
 
 /// Strides and size of the table of a level of count spheres.
 void lay_out(CellSearch::Level& g, std::uint64_t count) {
@@ -86,9 +168,6 @@ struct CellSearch::View {
 };
 
 namespace {
-
-using Doubles = double __attribute__((vector_size(32)));
-using Bits = std::int64_t __attribute__((vector_size(32)));
 
 struct Query {
   Doubles x, y, z, reach;  // each four times the same
@@ -240,7 +319,7 @@ __attribute__((always_inline)) inline void window(const CellSearch::View& v, con
 __attribute__((always_inline)) inline void later_cells(const CellSearch::View& v, const CellSearch::Level& g, Found& out,
                                                        const Query& q, std::uint32_t k, std::uint32_t own) {
   const std::uint32_t* start = v.cell_start + g.start;
-  const std::uint32_t cell = v.cell_of[k], sy = g.stride[1], sz = g.stride[2];
+  const std::uint32_t cell = v.cell_of[k] - g.start, sy = g.stride[1], sz = g.stride[2];
   const std::uint32_t rows[4] = {cell + sy - 1, cell + sz - sy - 1, cell + sz - 1, cell + sz + sy - 1};
   std::uint32_t begin[5], end[5];
   begin[0] = v.place[k] + 1;
@@ -321,62 +400,59 @@ CALX_HOT void search_windows(const CellSearch::View& view, std::uint32_t first, 
 }  // namespace
 
 void CellSearch::measure(const Particles& p, const Wrap& wrap, const Column<double>& margin) {
-  const Record* s = p.spheres();
-  const std::size_t n = p.sphere_count();
-  const bool wraps = wrap.any();
-  double x0 = 1e300, y0 = 1e300, z0 = 1e300, x1 = -1e300, y1 = -1e300, z1 = -1e300, least = 1e300, most = 0;
-#pragma omp parallel for schedule(static) if (n > kParallel) reduction(min : x0, y0, z0, least) reduction(max : x1, y1, z1, most)
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 x = inside(wrap, wraps, s[k]);
-    const double reach = s[k].r + margin[p.owner_of(k)];
-    x0 = std::min(x0, x.x), y0 = std::min(y0, x.y), z0 = std::min(z0, x.z);
-    x1 = std::max(x1, x.x), y1 = std::max(y1, x.y), z1 = std::max(z1, x.z);
-    least = std::min(least, reach), most = std::max(most, reach);
-  }
+  const std::size_t n = p.sphere_count(), blocks = blocks_for(n);
+  const Spheres spheres{p.spheres(), p.has_clumps ? p.owner.data() : nullptr, margin.data(), wrap, wrap.any()};
+  std::vector<Extent> extents(blocks);
+  in_blocks(n, blocks, [&](std::size_t b, std::size_t first, std::size_t last) {
+    measure_extent(spheres, first, last, extents[b]);
+  });
+  Extent extent;
+  for (const Extent& e : extents) extent.add(e);
   // The middle of some spheres, so that a stray one does not take the digits from the others.
   std::vector<double> sample[3];
   for (std::size_t k = 0; k < n; k += n / 16 + 1)
-    for (int d = 0; d < 3; ++d) sample[d].push_back(inside(wrap, wraps, s[k])[d]);
+    for (int d = 0; d < 3; ++d) sample[d].push_back(position(spheres.s[k])[d]);
   for (int d = 0; d < 3; ++d) {
     const auto middle = sample[d].begin() + static_cast<std::ptrdiff_t>(sample[d].size() / 2);
     std::nth_element(sample[d].begin(), middle, sample[d].end());
     origin_[d] = *middle;
   }
 
-  const ReachClasses classes(least, most);
+  const ReachClasses classes(extent.smallest, extent.largest);
   std::vector<ReachClasses::Class> found(classes.class_count());
   if (found.size() == 1) {
-    found[0] = {n, most};
+    found[0] = {n, extent.largest};
   } else {
-#pragma omp parallel if (n > kParallel)
-    {
-      std::vector<ReachClasses::Class> own(classes.class_count());
-#pragma omp for schedule(static) nowait
-      for (std::size_t k = 0; k < n; ++k) {
-        const double reach = s[k].r + margin[p.owner_of(k)];
-        ReachClasses::Class& c = own[classes.class_of(reach)];
+    std::vector<std::vector<ReachClasses::Class>> parts(blocks, found);
+    in_blocks(n, blocks, [&](std::size_t b, std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k) {
+        const double reach = spheres.reach(k);
+        ReachClasses::Class& c = parts[b][classes.class_of(reach)];
         ++c.count;
         c.largest = std::max(c.largest, reach);
       }
-#pragma omp critical
-      for (std::size_t c = 0; c < own.size(); ++c) {
-        found[c].count += own[c].count;
-        found[c].largest = std::max(found[c].largest, own[c].largest);
+    });
+    for (const auto& part : parts)
+      for (std::size_t c = 0; c < found.size(); ++c) {
+        found[c].count += part[c].count;
+        found[c].largest = std::max(found[c].largest, part[c].largest);
       }
-    }
   }
   levels_.clear();
-  std::size_t start = 0;
+  std::uint32_t start = 0;
   for (const double reach : choose_levels(found)) {
     Level g;
     g.reach = reach;
     g.cell = reach > 0 ? 2 * reach * (1 + kRoundingShare) : 1;
     g.inverse = 1 / g.cell;
-    const double low[3] = {x0, y0, z0}, high[3] = {x1, y1, z1};
-    for (int d = 0; d < 3; ++d) {
-      g.low[d] = cell_coordinate(low[d], origin_[d], g.inverse);
-      g.high[d] = cell_coordinate(high[d], origin_[d], g.inverse);
-    }
+    Unsigned low, high;
+    Doubles x, origin{origin_.x, origin_.y, origin_.z, 0};
+    std::memcpy(&x, extent.low, sizeof x);
+    cell_coordinates(x, origin, g.inverse, low);
+    std::memcpy(&x, extent.high, sizeof x);
+    cell_coordinates(x, origin, g.inverse, high);
+    std::memcpy(g.low, &low, sizeof low);
+    std::memcpy(g.high, &high, sizeof high);
     std::uint64_t count = 0;
     for (const auto& c : found)
       if (c.largest <= reach && (levels_.empty() || c.largest > levels_.back().reach)) count += c.count;
@@ -387,9 +463,9 @@ void CellSearch::measure(const Particles& p, const Wrap& wrap, const Column<doub
   }
   cell_start_.assign(start, 0);
   repeats_ = false;
-  for (const Level& g : levels_) repeats_ = repeats_ || (g.folded && (wraps || levels_.size() > 1));
+  for (const Level& g : levels_) repeats_ = repeats_ || (g.folded && (wrap.any() || levels_.size() > 1));
   for (int d = 0; d < 3; ++d)
-    if (wrap.periodic[static_cast<std::size_t>(d)] && wrap.length[d] < 4.01 * most) repeats_ = true;
+    if (wrap.periodic[static_cast<std::size_t>(d)] && wrap.length[d] < 4.01 * extent.largest) repeats_ = true;
 }
 
 namespace {
@@ -405,52 +481,33 @@ std::uint32_t sum_up(std::uint32_t* counts, std::size_t n, std::uint32_t sum) {
 }
 
 std::uint32_t sum_up_on_threads(std::uint32_t* counts, std::size_t n, std::uint32_t sum) {
-  const auto blocks = static_cast<std::size_t>(omp_get_max_threads());
-  if (blocks == 1 || n < 16 * kParallel) return sum_up(counts, n, sum);
+  const std::size_t blocks = blocks_for(n / 8);
+  if (blocks == 1) return sum_up(counts, n, sum);
   std::vector<std::uint32_t> before(blocks + 1, sum);
-  const std::size_t length = (n + blocks - 1) / blocks;
-  auto begin = [&](std::size_t b) { return std::min(n, b * length); };
-#pragma omp parallel for schedule(static)
-  for (std::size_t b = 0; b < blocks; ++b) {
+  in_blocks(n, blocks, [&](std::size_t b, std::size_t first, std::size_t last) {
     std::uint32_t total = 0;
-    for (std::size_t k = begin(b); k < begin(b + 1); ++k) total += counts[k];
+    for (std::size_t k = first; k < last; ++k) total += counts[k];
     before[b + 1] = total;
-  }
+  });
   for (std::size_t b = 0; b < blocks; ++b) before[b + 1] += before[b];
-#pragma omp parallel for schedule(static)
-  for (std::size_t b = 0; b < blocks; ++b) sum_up(counts + begin(b), begin(b + 1) - begin(b), before[b]);
+  in_blocks(n, blocks, [&](std::size_t b, std::size_t first, std::size_t last) {
+    sum_up(counts + first, last - first, before[b]);
+  });
   return before[blocks];
 }
 
 }  // namespace
 
 void CellSearch::bin(const Particles& p, const Wrap& wrap, const Column<double>& margin) {
-  const Record* s = p.spheres();
-  const std::size_t n = p.sphere_count();
-  const bool wraps = wrap.any();
+  const std::size_t n = p.sphere_count(), blocks = blocks_for(n);
+  const Spheres spheres{p.spheres(), p.has_clumps ? p.owner.data() : nullptr, margin.data(), wrap, wrap.any()};
   cell_of_.resize(n);
   place_.resize(n);
-  auto level_of = [&](double reach) {
-    std::size_t g = 0;
-    while (reach > levels_[g].reach) ++g;
-    return g;
-  };
   // First the number of a sphere within its cell. Threads may number them in any order: it shows in no result.
-  const bool alone = omp_get_max_threads() == 1 || n <= kParallel;
-#pragma omp parallel for schedule(static) if (!alone)
-  for (std::size_t k = 0; k < n; ++k) {
-    const Level& g = levels_[level_of(s[k].r + margin[p.owner_of(k)])];
-    cell_of_[k] = calx::cell_of(g, origin_, inside(wrap, wraps, s[k]));
-    std::uint32_t& count = cell_start_[g.start + cell_of_[k]];
-    if (alone) {
-      place_[k] = count++;
-    } else {
-      std::uint32_t number;
-#pragma omp atomic capture
-      number = count++;
-      place_[k] = number;
-    }
-  }
+  in_blocks(n, blocks, [&](std::size_t, std::size_t first, std::size_t last) {
+    count_cells(spheres, levels_.data(), origin_, first, last, blocks == 1, cell_start_.data(), cell_of_.data(),
+                place_.data());
+  });
   std::uint32_t sum = 0;
   for (Level& g : levels_) {
     std::uint32_t* start = &cell_start_[g.start];
@@ -464,17 +521,18 @@ void CellSearch::bin(const Particles& p, const Wrap& wrap, const Column<double>&
   // The last eight compared may reach beyond the end.
   for (auto* c : {&x_, &y_, &z_, &reach_}) c->resize(sum + 8);
   rank_.resize(sum + 8);
-#pragma omp parallel for schedule(static) if (n > kParallel)
-  for (std::size_t k = 0; k < n; ++k) {
-    const double reach = s[k].r + margin[p.owner_of(k)];
-    const std::uint32_t at = place_[k] += cell_start_[levels_[level_of(reach)].start + cell_of_[k]];
-    const Vec3 x = inside(wrap, wraps, s[k]);
-    x_[at] = x.x;
-    y_[at] = x.y;
-    z_[at] = x.z;
-    reach_[at] = reach;
-    rank_[at] = static_cast<std::uint32_t>(k);
-  }
+  in_blocks(n, blocks, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const std::uint32_t at = place_[k] += cell_start_[cell_of_[k]];
+      Doubles x;
+      load_inside(wrap, spheres.wraps, spheres.s[k], x);
+      x_[at] = x[0];
+      y_[at] = x[1];
+      z_[at] = x[2];
+      reach_[at] = spheres.reach(k);
+      rank_[at] = static_cast<std::uint32_t>(k);
+    }
+  });
   for (const Level& g : levels_) {
     const std::uint32_t* start = &cell_start_[g.start];
     for (std::uint32_t b = start[0]; b < start[2]; ++b) {
@@ -485,35 +543,52 @@ void CellSearch::bin(const Particles& p, const Wrap& wrap, const Column<double>&
   }
 }
 
-void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) {
+namespace {
+
+using Eight = std::int32_t __attribute__((vector_size(32)));
+
+/// Sorts rows of count[k] ranks from `rows` to `out`; eight more may be read. Ranks are below 2^31.
+CALX_HOT void sort_rows(const std::uint32_t* rows, const std::uint32_t* count, std::size_t n, bool repeats,
+                        std::uint32_t* out) {
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t length = count[k];
+    if (length <= 8 && !repeats) {
+      // The place of each is the number of smaller ones.
+      Eight row, at{};
+      std::memcpy(&row, rows, sizeof row);
+      for (std::uint32_t m = 0; m < length; ++m) at -= row > static_cast<std::int32_t>(rows[m]);
+      std::int32_t place[8];
+      std::memcpy(place, &at, sizeof place);
+      for (std::uint32_t m = 0; m < length; ++m) out[place[m]] = rows[m];
+    } else {
+      std::copy(rows, rows + length, out);
+      std::sort(out, out + length);
+    }
+    rows += length;
+    out += length;
+  }
+}
+
+}  // namespace
+
+void CellSearch::collect(std::size_t found, Scratch& scratch, Run& run) const {
   const std::size_t n = run.count.size();
-  // Rows start where those before end; next moves to the end of each.
-  auto& next = scratch.next;
-  next.resize(n);
+  // Where the next partner of each sphere goes.
+  scratch.next.resize(n);
+  scratch.rows.resize(std::max(scratch.rows.size(), found + 8));
+  std::uint32_t *const next = scratch.next.data(), *const rows = scratch.rows.data();
+  const std::uint32_t* const count = run.count.data();
   std::uint32_t sum = 0;
   for (std::size_t k = 0; k < n; ++k) {
     next[k] = sum;
-    sum += run.count[k];
+    sum += count[k];
   }
-  run.partner.resize(found);
   const std::uint32_t first = scratch.first;
+  const std::uint64_t* const pairs = scratch.pairs.data();
   for (std::size_t e = 0; e < found; ++e)
-    run.partner[next[(scratch.pairs[e] >> 32) - first]++] = static_cast<std::uint32_t>(scratch.pairs[e]);
-  std::uint32_t* row = run.partner.data();
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::uint32_t length = run.count[k];
-    if (length > 24) {
-      std::sort(row, row + length);
-    } else {
-      for (std::uint32_t a = 1; a < length; ++a) {
-        const std::uint32_t v = row[a];
-        std::uint32_t b = a;
-        for (; b > 0 && row[b - 1] > v; --b) row[b] = row[b - 1];
-        row[b] = v;
-      }
-    }
-    row += length;
-  }
+    rows[next[static_cast<std::uint32_t>(pairs[e] >> 32) - first]++] = static_cast<std::uint32_t>(pairs[e]);
+  run.partner.resize(found);
+  sort_rows(rows, count, n, repeats_, run.partner.data());
 }
 
 void CellSearch::merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run) {
@@ -599,7 +674,7 @@ std::size_t CellSearch::memory_bytes() const {
   bytes += (x_.capacity() + y_.capacity() + z_.capacity() + reach_.capacity()) * 8;
   for (const auto& r : runs_) bytes += (r.count.capacity() + r.partner.capacity()) * 4;
   for (const auto& f : foreign_) bytes += f.capacity() * 8;
-  for (const auto& s : scratch_) bytes += s.pairs.capacity() * 8 + s.next.capacity() * 4;
+  for (const auto& s : scratch_) bytes += s.pairs.capacity() * 8 + (s.next.capacity() + s.rows.capacity()) * 4;
   return bytes;
 }
 

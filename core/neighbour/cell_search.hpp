@@ -36,12 +36,12 @@ class CellSearch {
     double reach = 0;            // m, the largest of its spheres
     double cell = 1;             // m
     double inverse = 1;          // 1/m
-    std::uint32_t low[3] = {};   // cell coordinates of the lower corner of all spheres
-    std::uint32_t high[3] = {};  // and of the upper
-    std::uint32_t stride[3] = {1, 3, 9};
+    std::uint32_t low[4] = {};      // cell coordinates of the lower corner of all spheres; three count
+    std::uint32_t high[4] = {};     // and of the upper
+    std::uint32_t stride[4] = {};   // of the number of a cell by coordinate
     std::uint32_t mask = 0;             // number of cells - 1; a power of two less one
     bool folded = false;
-    std::size_t start = 0;              // its first cell in cell_start_
+    std::uint32_t start = 0;            // its first cell in cell_start_
     std::uint32_t first = 0, last = 0;  // its places
   };
 
@@ -49,12 +49,12 @@ class CellSearch {
   /// Of one thread.
   struct Scratch {
     std::vector<std::uint64_t> pairs;  // lower rank << 32 | higher
-    std::vector<std::uint32_t> next;
+    std::vector<std::uint32_t> next, rows;
     std::uint32_t first = 0;  // sphere of the run
   };
   void measure(const Particles& particles, const Wrap& wrap, const Column<double>& margin);
   void bin(const Particles& particles, const Wrap& wrap, const Column<double>& margin);
-  static void collect(std::size_t found, Scratch& scratch, Run& run);
+  void collect(std::size_t found, Scratch& scratch, Run& run) const;
   static void merge(const std::vector<std::uint64_t>& gained, std::uint32_t first, Run& run);
   static void drop_repeats(Run& run);
 
