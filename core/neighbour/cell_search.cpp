@@ -35,7 +35,7 @@ __attribute__((always_inline)) inline void cell_coordinates(const Doubles& x, co
   constexpr double h = kHalfRange;
   c = c < h ? c : Doubles{h, h, h, h};
   c = c > -h ? c : Doubles{-h, -h, -h, -h};
-  cell = (Unsigned)__builtin_convertvector(c + h, Signed);
+  cell = (Unsigned) __builtin_convertvector(c + h, Signed);
 }
 
 /// Position of a sphere, in the box along periodic directions, and a fourth value.
@@ -316,8 +316,8 @@ __attribute__((always_inline)) inline void window(const CellSearch::View& v, con
 }
 
 /// Later cells of the sphere's own level: the rest of its cell and the next of its row, and four rows of three.
-__attribute__((always_inline)) inline void later_cells(const CellSearch::View& v, const CellSearch::Level& g, Found& out,
-                                                       const Query& q, std::uint32_t k, std::uint32_t own) {
+__attribute__((always_inline)) inline void later_cells(const CellSearch::View& v, const CellSearch::Level& g,
+                                                       Found& out, const Query& q, std::uint32_t k, std::uint32_t own) {
   const std::uint32_t* start = v.cell_start + g.start;
   const std::uint32_t cell = v.cell_of[k] - g.start, sy = g.stride[1], sz = g.stride[2];
   const std::uint32_t rows[4] = {cell + sy - 1, cell + sz - sy - 1, cell + sz - 1, cell + sz + sy - 1};
@@ -633,9 +633,20 @@ void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>
   if (p.sphere_count() == 0) return;
   measure(p, wrap, margin);
   bin(p, wrap, margin);
-  const View view{x_.data(),          y_.data(),       z_.data(),     reach_.data(),
-                  rank_.data(),       cell_start_.data(), cell_of_.data(), place_.data(),
-                  p.has_clumps ? p.owner.data() : nullptr, levels_.data(), static_cast<std::uint32_t>(levels_.size()), origin_, wrap, wrap.any()};
+  const View view{x_.data(),
+                  y_.data(),
+                  z_.data(),
+                  reach_.data(),
+                  rank_.data(),
+                  cell_start_.data(),
+                  cell_of_.data(),
+                  place_.data(),
+                  p.has_clumps ? p.owner.data() : nullptr,
+                  levels_.data(),
+                  static_cast<std::uint32_t>(levels_.size()),
+                  origin_,
+                  wrap,
+                  wrap.any()};
   scratch_.resize(static_cast<std::size_t>(omp_get_max_threads()));
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t r = 0; r < runs; ++r) {
@@ -644,8 +655,8 @@ void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>
     runs_[r].count.assign(run_start[r + 1] - run_start[r], 0);
     foreign_[r].clear();
     if (scratch.pairs.size() < kRoom) scratch.pairs.resize(kRoom);
-    Found found{scratch.pairs, foreign_[r], runs_[r].count.data(), scratch.first, scratch.pairs.data(),
-                scratch.pairs.data() + (scratch.pairs.size() - kRoom)};
+    Found found{scratch.pairs, foreign_[r],          runs_[r].count.data(),
+                scratch.first, scratch.pairs.data(), scratch.pairs.data() + (scratch.pairs.size() - kRoom)};
     search_own_level(view, run_start[r], run_start[r + 1], found);
     if (levels_.size() > 1 || view.wraps) search_windows(view, run_start[r], run_start[r + 1], found);
     collect(static_cast<std::size_t>(found.at - scratch.pairs.data()), scratch, runs_[r]);

@@ -15,34 +15,7 @@ std::uint32_t chunk_length(std::size_t particle_count) {
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(even, 256, 4096));
 }
 
-std::uint64_t spread(std::uint64_t v) {
-  v &= 0x1FFFFF;
-  v = (v | v << 32) & 0x1F00000000FFFFull;
-  v = (v | v << 16) & 0x1F0000FF0000FFull;
-  v = (v | v << 8) & 0x100F00F00F00F00Full;
-  v = (v | v << 4) & 0x10C30C30C30C30C3ull;
-  v = (v | v << 2) & 0x1249249249249249ull;
-  return v;
-}
-
 }  // namespace
-
-std::vector<std::uint32_t> morton_order(const Particles& particles, double cell) {
-  const std::size_t n = particles.count();
-  Box box;
-  for (const auto& b : particles.body) box.add(position(b));
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 d = (position(particles.body[k]) - box.lo) / cell;
-    keys[k] = {spread(static_cast<std::uint64_t>(d.x)) | spread(static_cast<std::uint64_t>(d.y)) << 1 |
-                   spread(static_cast<std::uint64_t>(d.z)) << 2,
-               static_cast<std::uint32_t>(k)};
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::uint32_t> order(n);
-  for (std::size_t k = 0; k < n; ++k) order[k] = keys[k].second;
-  return order;
-}
 
 void PairList::make_chunks(const Particles& p) {
   const auto n = static_cast<std::uint32_t>(p.count());
@@ -76,12 +49,13 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
   old_history.swap(history);
   const std::size_t old_stride = stride;
 
-  row_.assign(n + 1, 0);
+  std::size_t entries = 0;
   for (std::size_t c = 0; c < chunks.size(); ++c) {
-    std::size_t k = chunks[c].first_sphere;
-    for (const std::uint32_t count : search_.run(c).count) row_[k + 1] = row_[k] + count, ++k;
+    chunks[c].first_entry = entries;
+    chunks[c].last_entry = entries += search_.run(c).partner.size();
   }
-  const std::size_t entries = row_[n];
+  row_.resize(n + 1);
+  row_[n] = entries;
   i.resize(entries);
   j.resize(entries);
   touching.assign(entries, 0);
@@ -91,13 +65,15 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
 
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t c = 0; c < chunks.size(); ++c) {
-    Chunk& chunk = chunks[c];
-    chunk.first_entry = row_[chunk.first_sphere];
-    chunk.last_entry = row_[chunk.last_sphere];
-    const auto& partner = search_.run(c).partner;
-    std::copy(partner.begin(), partner.end(), j.begin() + static_cast<std::ptrdiff_t>(chunk.first_entry));
-    for (std::uint32_t k = chunk.first_sphere; k < chunk.last_sphere; ++k)
-      std::fill(i.begin() + static_cast<std::ptrdiff_t>(row_[k]), i.begin() + static_cast<std::ptrdiff_t>(row_[k + 1]), k);
+    const CellSearch::Run& found = search_.run(c);
+    std::size_t e = chunks[c].first_entry;
+    std::copy(found.partner.begin(), found.partner.end(), j.begin() + static_cast<std::ptrdiff_t>(e));
+    std::uint32_t k = chunks[c].first_sphere;
+    for (const std::uint32_t count : found.count) {
+      row_[k] = e;
+      for (std::uint32_t m = 0; m < count; ++m) i[e++] = k;
+      ++k;
+    }
   }
   if (!old_row.empty()) carry_history(spec, old_rank, old_row, old_j, old_touching, old_history, old_stride);
   link_chunks();

@@ -12,6 +12,7 @@
 
 #include "base/column.hpp"
 #include "neighbour/cell_search.hpp"
+#include "neighbour/morton.hpp"
 #include "neighbour/wrap.hpp"
 #include "store/particles.hpp"
 
@@ -63,8 +64,5 @@ class PairList {
   CellSearch search_;
   std::vector<std::uint32_t> run_start_;  // first sphere of each chunk; one more at the end
 };
-
-/// Order of particles along a Morton curve through cells of the size given, ties by present rank.
-std::vector<std::uint32_t> morton_order(const Particles& particles, double cell);
 
 }  // namespace calx

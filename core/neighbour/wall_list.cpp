@@ -33,7 +33,7 @@ struct WallList::Search {
   const std::vector<PartPlace>& parts;
   const Column<double>& margin;
   double margin_factor;
-  std::vector<Box> box;             // of each part, world frame
+  std::vector<Box> box;              // of each part, world frame
   std::vector<std::uint32_t> shown;  // parts that are present
 
   double reach(std::uint32_t k) const {

@@ -28,7 +28,8 @@ Pairs pairs_of(const CellSearch& search, const std::vector<std::uint32_t>& runs)
     REQUIRE(search.run(r).count.size() == runs[r + 1] - runs[r]);
     std::size_t e = 0;
     for (std::uint32_t k = runs[r]; k < runs[r + 1]; ++k)
-      for (std::uint32_t m = search.run(r).count[k - runs[r]]; m > 0; --m) out.emplace_back(k, search.run(r).partner[e++]);
+      for (std::uint32_t m = search.run(r).count[k - runs[r]]; m > 0; --m)
+        out.emplace_back(k, search.run(r).partner[e++]);
     CHECK(e == search.run(r).partner.size());
   }
   return out;
