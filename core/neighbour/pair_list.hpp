@@ -7,30 +7,16 @@
 // Margins: each particle may move by its own margin before the list is stale; a fast particle gets a wide one, so that
 // a thin falling stream does not force a rebuild of the whole bed every few steps.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "base/column.hpp"
+#include "neighbour/cell_search.hpp"
+#include "neighbour/morton.hpp"
+#include "neighbour/wrap.hpp"
 #include "store/particles.hpp"
 
 namespace calx {
-
-/// Periodic box; only directions marked periodic wrap.
-struct Wrap {
-  Vec3 lo, length;  // m
-  std::array<bool, 3> periodic{false, false, false};
-  bool any() const { return periodic[0] || periodic[1] || periodic[2]; }
-  /// Shortest image of a difference of positions.
-  Vec3 nearest(Vec3 d) const {
-    for (int k = 0; k < 3; ++k)
-      if (periodic[static_cast<std::size_t>(k)]) {
-        if (d[k] > 0.5 * length[k]) d[k] -= length[k];
-        if (d[k] < -0.5 * length[k]) d[k] += length[k];
-      }
-    return d;
-  }
-};
 
 /// History columns of contacts: how to start, turn round and end a row.
 struct HistorySpec {
@@ -69,25 +55,14 @@ class PairList {
   std::size_t memory_bytes() const;
 
  private:
-  struct ChunkWork {
-    std::vector<std::uint32_t> partner, row_count;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> extra;
-  };
   void make_chunks(const Particles& particles);
   void link_chunks();
   void carry_history(const HistorySpec& spec, const std::uint32_t* old_rank, const Column<std::size_t>& old_row,
                      const Column<std::uint32_t>& old_j, const Column<std::uint8_t>& old_touching,
                      const Column<double>& old_history);
   Column<std::size_t> row_;  // first entry of each sphere; one more at the end
-  std::vector<ChunkWork> work_;
-  std::vector<std::uint32_t> cell_of_, cell_start_, binned_;
-  struct Binned {
-    double x, y, z, reach;
-  };
-  Column<Binned> packed_;
+  CellSearch search_;
+  std::vector<std::uint32_t> run_start_;  // first sphere of each chunk; one more at the end
 };
-
-/// Order of particles along a Morton curve through cells of the size given, ties by present rank.
-std::vector<std::uint32_t> morton_order(const Particles& particles, double cell);
 
 }  // namespace calx

@@ -47,7 +47,9 @@ class WallList {
  private:
   struct ChunkWork {
     std::vector<std::uint32_t> sphere, part, first_element, elements;
+    std::vector<std::uint32_t> near_group, near_few, probe;  // parts near runs of spheres; elements near a run
   };
+  struct Search;
   std::vector<ChunkWork> work_;
   std::vector<std::uint32_t> row_of_sphere_;  // first row of each sphere; one more at the end
 };
