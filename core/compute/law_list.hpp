@@ -22,7 +22,7 @@ constexpr std::uint32_t kBlockStride = kColumnStride<double>;
 struct LawTerm {
   const calx_contact_law* table = nullptr;
   std::string name, id;
-  std::vector<double> pair_row;    // for (i, j) in this order
+  std::vector<double> pair_row;  // for (i, j) in this order
   std::vector<float> pair_row_f32;
   std::uint32_t state_offset = 0;  // first history column of this term
 };
@@ -56,8 +56,8 @@ struct BlockScratchOf {
 };
 using BlockScratch = BlockScratchOf<double>;
 
-/// Evaluates scratch.count rows: reads in and state, writes out (0..5, and 6..9 when energy) and state. The law's text in
-/// the precision of Real runs. [worker]
+/// Evaluates scratch.count rows: reads in and state, writes out (0..5, and 6..9 when energy) and state. The law's text
+/// in the precision of Real runs. [worker]
 template <class Real>
 void evaluate_block(const LawList& list, BlockScratchOf<Real>& scratch, double dt, double time, bool energy);
 

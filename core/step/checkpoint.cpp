@@ -83,8 +83,10 @@ void Engine::save(StateWriter& out) const {
 
 void Engine::load(const StateReader& in) {
   if (in.get_text("contacts/layout") != history_layout())
-    throw Error(Fault::files, "checkpoint: its contact history was written by other laws or in another precision; in the checkpoint:\n" +
-                                  in.get_text("contacts/layout") + "in this case:\n" + history_layout());
+    throw Error(
+        Fault::files,
+        "checkpoint: its contact history was written by other laws or in another precision; in the checkpoint:\n" +
+            in.get_text("contacts/layout") + "in this case:\n" + history_layout());
   particles.load(in);
   const auto margins = in.get_doubles("lists/margin"), reference = in.get_doubles("lists/reference"),
              lengths = in.get_doubles("lists/lengths"), sums = in.get_doubles("energy/sums");

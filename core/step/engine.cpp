@@ -400,7 +400,8 @@ std::size_t Engine::memory_bytes() const {
   const Particles& p = particles;
   std::size_t bytes = pairs_.memory_bytes() + walls_.memory_bytes();
   bytes += (p.body.capacity() + p.member.capacity()) * sizeof(Record) + p.turn.capacity() * sizeof(Quat);
-  bytes += lean_.capacity() * sizeof(LeanRecord) + (lean_wrench_.capacity() + lean_slot_.capacity()) * sizeof(LeanWrench);
+  bytes +=
+      lean_.capacity() * sizeof(LeanRecord) + (lean_wrench_.capacity() + lean_slot_.capacity()) * sizeof(LeanWrench);
   bytes += (p.wrench.capacity() + sphere_wrench_.capacity() + sum_.capacity()) * sizeof(Wrench);
   bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() +
             p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *

@@ -49,7 +49,7 @@ struct EngineOptions {
   Box domain;
   bool verlet = false;
   bool ledger = false;
-  bool mixed = false;  // pair contacts in single precision, from exact positions
+  bool mixed = false;          // pair contacts in single precision, from exact positions
   double skin = 0;             // m, smallest margin of a particle; 0: 0.1 of the smallest radius
   double overlap_limit = 0.5;  // of the radius
 };

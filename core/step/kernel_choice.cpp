@@ -45,8 +45,8 @@ const StepKernels& choose() {
     known += std::string(known.empty() ? "" : ", ") + c.name;
   }
   if (!best)
-    throw Error(Fault::usage,
-                "CALX_INSTRUCTION_SET=" + std::string(asked) + ": not a set of this build and processor; it has " + known);
+    throw Error(Fault::usage, "CALX_INSTRUCTION_SET=" + std::string(asked) +
+                                  ": not a set of this build and processor; it has " + known);
   return *best;
 }
 

@@ -13,8 +13,8 @@ namespace calx {
 /// A sphere as the pair loop in mixed precision sees it: one cache line. The position is exact, so that overlaps are
 /// differences of doubles; all else has single precision.
 struct alignas(64) LeanRecord {
-  double x, y, z, r;      // m
-  float vx, vy, vz, m;    // m/s, kg
+  double x, y, z, r;       // m
+  float vx, vy, vz, m;     // m/s, kg
   float wx, wy, wz, none;  // rad/s
 };
 /// Sums of a sphere's pair contacts in mixed precision.
@@ -58,7 +58,7 @@ struct PairScan {
   const double* history;  // of entry 0
   std::size_t width;      // values of an entry
   const void* sums;       // Sum of the precision
-  const Wrap* wrap;  // null where nothing is periodic
+  const Wrap* wrap;       // null where nothing is periodic
   std::size_t first_entry, next_entry, last_entry;
   std::uint32_t last_sphere;  // of the chunk
   std::uint32_t crossed;      // entries before next_entry that leave the chunk
@@ -66,8 +66,8 @@ struct PairScan {
   std::uint32_t fresh[kBlockRows];
 };
 
-/// What the law sees of a block; wx, wy, wz and r_i, r_j are not written where they are null. arm_i, arm_j: m, from each
-/// centre to the contact point.
+/// What the law sees of a block; wx, wy, wz and r_i, r_j are not written where they are null. arm_i, arm_j: m, from
+/// each centre to the contact point.
 template <class Real>
 struct PairColumns {
   Real *overlap, *nx, *ny, *nz, *vx, *vy, *vz, *wx, *wy, *wz, *r_eff, *m_eff, *r_i, *r_j, *arm_i, *arm_j;
@@ -107,10 +107,10 @@ struct PairKernels {
   using Real = typename Precision::Real;
   /// Fills the block with the next touching pairs; marks entries that touch and that do not. True while entries remain.
   bool (*find)(PairScan& scan, PairBlock& block);
-  /// Kinematics of block.count rows. The contact point lies in the middle of the overlap; velocity: that of i relative to
-  /// j at the contact point. True if some row may have overlap / (2 r_eff) above largest.
-  bool (*kinematics)(const typename Precision::Sphere* spheres, const Wrap* wrap, const PairBlock& block, double largest,
-                     const PairColumns<Real>& out);
+  /// Kinematics of block.count rows. The contact point lies in the middle of the overlap; velocity: that of i relative
+  /// to j at the contact point. True if some row may have overlap / (2 r_eff) above largest.
+  bool (*kinematics)(const typename Precision::Sphere* spheres, const Wrap* wrap, const PairBlock& block,
+                     double largest, const PairColumns<Real>& out);
   /// Rows of history into columns of the law, and back. history: of the chunk's first entry; width: values of an entry;
   /// count: columns, kColumnStride<Real> apart.
   void (*read_history)(const double* history, std::uint32_t width, const PairBlock& block, std::uint32_t count,
@@ -133,8 +133,8 @@ struct StepKernels {
   void (*move_clumps)(Record* body, const Wrench* wrench, std::size_t count, const double gravity[3], double dt);
   /// haste: 1 / margin^2 of each particle, 1/m^2, rounded up.
   void (*survey)(const Record* body, const float* haste, std::size_t count, bool clumps, Survey& out);
-  /// Turns bodies over dt by the midpoint rule: angular momentum gets torque * kick, the body turns freely (momentum kept
-  /// exactly), then momentum gets torque * late_kick.
+  /// Turns bodies over dt by the midpoint rule: angular momentum gets torque * kick, the body turns freely (momentum
+  /// kept exactly), then momentum gets torque * late_kick.
   void (*turn_bodies)(std::uint32_t n, TurnTile& tile, double dt, double kick, double late_kick);
 };
 

@@ -76,10 +76,9 @@ CALX_INLINE bool same_flags(const std::uint8_t* flags, unsigned bits) {
 
 /// The lanes whose bit is set, moved to the front; what follows them means nothing.
 CALX_INLINE FourIndex pick(FourIndex v, unsigned bits) {
-  static const unsigned char lanes[16][4] = {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3},
-                                             {2, 0, 1, 3}, {0, 2, 1, 3}, {1, 2, 0, 3}, {0, 1, 2, 3},
-                                             {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2},
-                                             {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+  static const unsigned char lanes[16][4] = {
+      {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 1, 3}, {1, 2, 0, 3}, {0, 1, 2, 3},
+      {3, 0, 1, 2}, {0, 3, 1, 2}, {1, 3, 0, 2}, {0, 1, 3, 2}, {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 2, 3, 0}, {0, 1, 2, 3}};
 #if defined(__AVX2__)
   const __m128i order = _mm_cvtepu8_epi32(_mm_loadu_si32(lanes[bits]));
   return reinterpret_cast<FourIndex>(_mm_permutevar_ps(reinterpret_cast<__m128>(v), order));
@@ -115,7 +114,9 @@ CALX_INLINE void transpose(EightFloat& a, EightFloat& b, EightFloat& c, EightFlo
 }
 CALX_INLINE FourFloat lower(EightFloat v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); }
 CALX_INLINE FourFloat upper(EightFloat v) { return __builtin_shufflevector(v, v, 4, 5, 6, 7); }
-CALX_INLINE EightFloat joined(FourFloat a, FourFloat b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+CALX_INLINE EightFloat joined(FourFloat a, FourFloat b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 
 /// Shortest image of differences along one direction.
 CALX_INLINE Four nearest(Four d, double length) {
@@ -137,7 +138,7 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
   using Sphere = typename Precision::Sphere;
   const Sphere* __restrict s = static_cast<const Sphere*>(scan.spheres);
   const auto* sums = static_cast<const typename Precision::Sum*>(scan.sums);
-  const std::uint32_t *__restrict pi = scan.i, *__restrict pj = scan.j;
+  const std::uint32_t* __restrict pi = scan.i, * __restrict pj = scan.j;
   std::size_t e = scan.next_entry;
   const std::size_t last = scan.last_entry;
   std::uint32_t n = 0, crossed = scan.crossed, started = 0;
@@ -169,7 +170,7 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
       const double* rows = scan.history + (e + kAhead) * scan.width;
       for (std::size_t h = 0; h < 4 * scan.width; h += 8) __builtin_prefetch(rows + h, 1);
     }
-    Four d0 = load(&s[gi[0]].x) , d1 = load(&s[gi[1]].x), d2 = load(&s[gi[2]].x), d3 = load(&s[gi[3]].x);
+    Four d0 = load(&s[gi[0]].x), d1 = load(&s[gi[1]].x), d2 = load(&s[gi[2]].x), d3 = load(&s[gi[3]].x);
     Four b0 = load(&s[gj[0]].x), b1 = load(&s[gj[1]].x), b2 = load(&s[gj[2]].x), b3 = load(&s[gj[3]].x);
     // Lane 3 carries radii: minus for the sum under the difference.
     const FourMask sign{0, 0, 0, static_cast<long long>(0x8000000000000000ull)};
@@ -256,8 +257,7 @@ CALX_INLINE FourMotions motions(const Record* const* s) {
   return out;
 }
 CALX_INLINE FourLeanMotions motions(const LeanRecord* const* s) {
-  EightFloat x = load_eight(&s[0]->vx), y = load_eight(&s[1]->vx), z = load_eight(&s[2]->vx),
-             m = load_eight(&s[3]->vx);
+  EightFloat x = load_eight(&s[0]->vx), y = load_eight(&s[1]->vx), z = load_eight(&s[2]->vx), m = load_eight(&s[3]->vx);
   transpose(x, y, z, m);
   return {lower(x), lower(y), lower(z), lower(m), upper(x), upper(y), upper(z)};
 }
@@ -364,8 +364,7 @@ void write_history(double* history, std::uint32_t width, const PairBlock& block,
     for (std::uint32_t h = 0; h < count; h += 4, from += 4 * stride) {
       const std::uint32_t left = count - h;
       Four a = load_columns(from), b = left > 1 ? load_columns(from + stride) : zero,
-           c = left > 2 ? load_columns(from + 2 * stride) : zero,
-           d = left > 3 ? load_columns(from + 3 * stride) : zero;
+           c = left > 2 ? load_columns(from + 2 * stride) : zero, d = left > 3 ? load_columns(from + 3 * stride) : zero;
       transpose(a, b, c, d);
       // Rows beyond the count repeat the last one: they must not write over it.
       store_first(r0 + h, a, left);
@@ -562,15 +561,14 @@ void turn_bodies(std::uint32_t n, TurnTile& t, double dt, double kick, double la
 }  // namespace
 
 extern const StepKernels CALX_KERNELS;
-const StepKernels CALX_KERNELS{{find<InDouble>, kinematics<InDouble>, read_history<InDouble>, write_history<InDouble>,
-                                scatter<InDouble>},
-                               {find<InMixed>, kinematics<InMixed>, read_history<InMixed>, write_history<InMixed>,
-                                scatter<InMixed>},
-                               thin,
-                               widen,
-                               move_spheres,
-                               move_clumps,
-                               survey,
-                               turn_bodies};
+const StepKernels CALX_KERNELS{
+    {find<InDouble>, kinematics<InDouble>, read_history<InDouble>, write_history<InDouble>, scatter<InDouble>},
+    {find<InMixed>, kinematics<InMixed>, read_history<InMixed>, write_history<InMixed>, scatter<InMixed>},
+    thin,
+    widen,
+    move_spheres,
+    move_clumps,
+    survey,
+    turn_bodies};
 
 }  // namespace calx
