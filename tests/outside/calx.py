@@ -124,7 +124,7 @@ class CalxTest(unittest.TestCase):
                 shutil.copy(CALX, program)
             words = (*words, *(w for p in plugins for w in ("--plugin-path", p)))
         env = {k: v for k, v in os.environ.items() if k not in ("CALX_PLUGIN_PATH", "XDG_DATA_HOME")}
-        env.update(HOME=str(self.dir), OMP_NUM_THREADS="2")
+        env.update(HOME=str(self.dir), OMP_NUM_THREADS="2", **options.pop("env", {}))
         return Result(subprocess.run([str(w) for w in (program, *words)], cwd=self.dir, env=env, text=True, timeout=120,
                                      stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options))
 

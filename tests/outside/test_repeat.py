@@ -3,7 +3,7 @@ import json
 import shutil
 import unittest
 
-from calx import EPAM, CalxTest, busy, cup, differences, needs
+from calx import EPAM, USAGE, CalxTest, busy, cup, differences, needs
 
 
 class Repeat(CalxTest):
@@ -24,14 +24,17 @@ class Repeat(CalxTest):
         for name in ("frames.pvd", "case.json"):
             self.assertEqual((self.dir / "first" / name).read_bytes(), (self.dir / "second" / name).read_bytes())
 
-    def test_threads(self):
+    def crowd(self):
+        """More particles than one chunk of work, in motion and in contact."""
         needs("calx.epam")
-        # More particles than one chunk of work, in motion and in contact.
         case = cup({"/sources/0/count": 900, "/sources/0/region": {"box": {"min": [-0.019, -0.019, 0.002], "max": [0.019, 0.019, 0.075]}},
                     "/shapes/ball/sphere/radius": 0.0017, "/time/end": 0.03, "/output": {}})
         for contact in case["contacts"]:
             contact.update(law="calx.epam", parameters=EPAM)
-        path = self.write(case)
+        return self.write(case)
+
+    def test_threads(self):
+        path = self.crowd()
         for threads in (1, 2, 3, 8):
             self.runs(path, "-o", f"by {threads}", "--threads", threads)
             self.assertEqual(self.summary(f"by {threads}")["provenance"]["threads"], threads)
@@ -39,6 +42,21 @@ class Repeat(CalxTest):
         self.assertGreater(self.summary("by 1")["energy"]["plastic"], 0)
         for threads in (2, 3, 8):
             self.assert_same("by 1", f"by {threads}")
+
+    def test_instruction_sets(self):
+        path = self.crowd()
+        wrong = self.calx("run", path, env={"CALX_INSTRUCTION_SET": "x86-64-v9"})
+        self.fails(USAGE, "CALX_INSTRUCTION_SET=x86-64-v9", "plain", result=wrong)
+        known = wrong.err.split("it has ")[1].strip().split(", ")
+        self.assertEqual(known[0], "plain")
+        for precision in ("double", "mixed"):
+            for name in known:
+                self.runs(path, "-o", f"{precision} {name}", "--precision", precision, env={"CALX_INSTRUCTION_SET": name})
+                self.assert_same(f"{precision} plain", f"{precision} {name}")
+            self.assertEqual(self.summary(f"{precision} plain")["provenance"]["precision"], precision)
+        self.runs(path, "-o", "mixed by 3", "--precision", "mixed", "--threads", 3)
+        self.assert_same("mixed plain", "mixed by 3")
+        self.assertNotEqual(differences(self.checkpoint("double plain"), self.checkpoint("mixed plain")), [])
 
     def test_resolved_case(self):
         path = self.write(busy())
