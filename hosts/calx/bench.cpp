@@ -86,7 +86,6 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--law", b->law, "clumps: calx.epam (default) or calx.hertz-mindlin");
   command->add_option("--base", b->base, "chute: bumps (default) or plane");
   command->add_option("--case", b->case_path, std::string("fill: the case file (default: ") + kFill + ")");
-  command->add_option("--checkpoint", b->checkpoint, "fill: go on from the checkpoint in this folder of a run");
   command->add_option("--plugin-path", b->plugin_path, "folder with plugins, searched first; repeatable");
   command->add_flag("--json", b->json, "one JSON line for each row");
   command->callback([b, set] { run_bench(*b, *set); });

@@ -155,55 +155,59 @@ void run_rolling(const std::string& folder, const BenchOptions& o) {
   finish_row(row, sim, 0, o.json);
 }
 
-/// Columns of contacts as in a bed of 2.5 mm spheres, and the law's history of each.
+/// Columns of contacts as in a bed of 2.5 mm spheres, one behind the other, and the law's history of each.
 template <class Real, class Block>
 class LawBlock {
  public:
-  LawBlock(const LawTerm& term, std::uint32_t rows, double dt)
-      : in_(CALX_IN_COUNT, std::vector<Real>(rows)),
-        out_(6, std::vector<Real>(rows)),
-        pair_(term.pair_row.begin(), term.pair_row.end()) {
+  LawBlock(const LawTerm& term, std::uint32_t rows, double dt) : pair_(term.pair_row.begin(), term.pair_row.end()) {
+    constexpr std::size_t kOutputs = 6;
+    // Columns a power of two apart would share cache sets; the first starts where a cache line does.
+    const std::size_t stride = rows + 8;
+    data_.resize(stride * (CALX_IN_COUNT + kOutputs + term.table->state_count + 1) + 64);
+    void* start = data_.data();
+    std::size_t room = data_.size() * sizeof(Real);
+    auto* column = static_cast<Real*>(std::align(64, 1, start, room));
     Random random(1, 15);
     for (std::uint32_t r = 0; r < rows; ++r) {
       const Vec3 n = normalized(Vec3{random.normal(), random.normal(), random.normal()});
+      auto velocity = [&] { return random.uniform(-0.02, 0.02); };
+      auto rate = [&] { return random.uniform(-5, 5); };
       const double values[CALX_IN_COUNT] = {kRadius * random.uniform(1e-4, 4e-3),
                                             n.x,
                                             n.y,
                                             n.z,
-                                            random.uniform(-0.02, 0.02),
-                                            random.uniform(-0.02, 0.02),
-                                            random.uniform(-0.02, 0.02),
-                                            random.uniform(-5, 5),
-                                            random.uniform(-5, 5),
-                                            random.uniform(-5, 5),
+                                            velocity(),
+                                            velocity(),
+                                            velocity(),
+                                            rate(),
+                                            rate(),
+                                            rate(),
                                             0.5 * kRadius,
                                             8.6e-6,
                                             kRadius,
                                             kRadius,
                                             0};
-      for (int k = 0; k < CALX_IN_COUNT; ++k) in_[static_cast<std::size_t>(k)][r] = static_cast<Real>(values[k]);
+      for (std::size_t k = 0; k < CALX_IN_COUNT; ++k) column[k * stride + r] = static_cast<Real>(values[k]);
     }
-    // Columns a power of two apart would share cache sets.
-    const std::uint32_t stride = rows + 8;
-    state_.resize(std::size_t{stride} * std::max(1u, term.table->state_count));
-    for (std::uint32_t k = 0; k < term.table->state_count; ++k)
-      std::fill_n(state_.begin() + std::size_t{stride} * k, rows, static_cast<Real>(term.table->state[k].preset));
     std::memset(&block_, 0, sizeof block_);
     block_.struct_size = sizeof block_;
     block_.count = rows;
     block_.stride = stride;
     block_.dt = dt;
-    for (std::size_t k = 0; k < CALX_IN_COUNT; ++k)
-      block_.in[k] = (term.table->needs >> k) & 1u ? in_[k].data() : nullptr;
-    for (std::size_t k = 0; k < out_.size(); ++k) block_.out[k] = out_[k].data();
+    for (std::size_t k = 0; k < CALX_IN_COUNT; ++k, column += stride)
+      block_.in[k] = (term.table->needs >> k) & 1u ? column : nullptr;
+    for (std::size_t k = 0; k < kOutputs; ++k, column += stride) block_.out[k] = column;
     block_.pair = pair_.data();
-    block_.state = state_.data();
+    block_.state = column;
+    for (std::uint32_t k = 0; k < term.table->state_count; ++k, column += stride)
+      std::fill_n(column, rows, static_cast<Real>(term.table->state[k].preset));
   }
+  LawBlock(const LawBlock&) = delete;
+  LawBlock& operator=(const LawBlock&) = delete;
   const Block* get() const { return &block_; }
 
  private:
-  std::vector<std::vector<Real>> in_, out_;
-  std::vector<Real> pair_, state_;
+  std::vector<Real> pair_, data_;
   Block block_;
 };
 
@@ -231,7 +235,8 @@ void time_laws(const std::string& folder, const BenchOptions& o) {
       if (o.rolling > 0) scene.contacts += R"(, "rolling": "epsd", "rolling_friction": )" + format_number(o.rolling);
       scene.contacts += "}}";
     }
-    const CaseFile file = read_scene(write_scene(scene, folder), o);
+    // Overrides are meant for the impacts.
+    const CaseFile file = read_case(write_scene(scene, folder));
     PluginRegistry registry(plugin_search_path(o.plugin_path));
     const CaseLaws laws = load_laws(file.settings, registry);
     const LawTerm& term = laws.matrix[0]->terms[0];

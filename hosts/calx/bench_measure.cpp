@@ -1,6 +1,4 @@
 // bench_measure.cpp: times the steps of a case and describes what was computed while the clock ran.
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,7 +10,6 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "bench_scene.hpp"
-#include "io/io.hpp"
 
 namespace calx {
 namespace {
@@ -29,9 +26,8 @@ double process_bytes(const std::string& key) {
   return 0;
 }
 
-/// Memory that is free inside the process goes back, and the peak starts anew where the system allows that.
+/// The peak starts anew where the system allows that (Linux; proc(5), clear_refs).
 void reset_peak() {
-  malloc_trim(0);
   std::ofstream out("/proc/self/clear_refs");
   out << "5\n";
 }
@@ -181,7 +177,6 @@ void time_case(CaseFile file, const std::function<void(const Simulation&, BenchR
   options.plugin_path = o.plugin_path;
   Simulation sim(std::move(file), options);
   file = {};
-  if (!o.checkpoint.empty()) sim.load(*read_checkpoint(o.checkpoint));
   // The first step inserts the particles; what that needs for a moment is not what a run needs.
   sim.step();
   const double peak_at_start = process_bytes("VmHWM") - before;

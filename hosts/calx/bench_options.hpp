@@ -18,7 +18,7 @@ struct BenchOptions {
   std::string save_start;         // folder, gets the whole start
   std::string law = "calx.epam";  // clumps
   std::string base = "bumps";     // chute
-  std::string case_path, checkpoint;  // fill
+  std::string case_path;          // fill
   std::string precision = "double";
   std::vector<std::string> plugin_path;
   std::vector<std::pair<std::string, std::string>> overrides;  // JSON pointer and value
