@@ -14,10 +14,10 @@ from starts import read_csv, run, write_csv, write_data
 
 # Largest difference over the speed before. The tangential limits are as wide as the codes differ among themselves: on the
 # floor at 75 degrees with restitution 0.3 LIGGGHTS leaves with 0.726 and LAMMPS with 0.835 of the speed, for they treat the
-# dashpot and the end of slipping differently; Yade's shear dashpot and rolling cap are others still.
+# dashpot and the end of slipping differently; Yade's shear dashpot is another still.
 KINDS = ("head-on", "normal", "tangential", "spin", "rolling")
 LIMITS = {"liggghts": (0.002, 0.005, 0.06, 0.14, 0.03), "lammps": (0.002, 0.005, 0.10, 0.20, 0.03),
-          "yade": (0.005, 0.01, 0.15, 0.30, 0.25)}
+          "yade": (0.002, 0.005, 0.15, 0.30, 0.03)}
 RADIUS, DENSITY, GRAVITY = 1.25e-3, 2100.0, 9.81
 HOOKE = {"between": ["sand", "sand"], "law": "calx.linear", "parameters": {
     "kn": 1000, "restitution": 1, "damping_rate": 2000, "tangential_damping": 0, "friction": 0.5}}
@@ -50,7 +50,8 @@ def peer_bodies(code, folder, rows, gravity, rolling, options, law):
     step, steps, restitution = rows[0]["step_s"], rows[0]["steps"], rows[0]["restitution_asked"]
     if code == "yade":
         env = dict(os.environ, GATE="1", START=str(folder), STEPS=str(steps), STEP=repr(step),
-                   RESTITUTION=repr(restitution), GRAVITY=repr(gravity), ROLLING=repr(rolling), WARM_UP="0")
+                   RESTITUTION=repr(restitution), GRAVITY=repr(gravity), ROLLING=repr(rolling), WARM_UP="0",
+                   ON_WALL=str(int(gravity > 0)))
         text, _ = output(["yade", "-n", "-x", "-j", 1, HERE / "decks/box_yade.py"], env, options.scratch)
         found = json.loads(next(row for row in text.splitlines() if row.startswith("{\"yade\"")))
         return numpy.array(found["velocity_m_s"]), numpy.array(found["spin_rad_s"])

@@ -6,7 +6,7 @@ import codes
 import starts
 
 ROUNDS = 3
-LATE = 1.2                        # s, in the third cycle's fill of the example
+LATE = 2.2                        # s, in the third cycle of the example
 REST = "/rest={}"                 # how a case asks for quiescent regions to be skipped
 
 

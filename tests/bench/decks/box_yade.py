@@ -1,5 +1,6 @@
 """box_yade.py: a bed in a box, timed, or bodies that collide (the gate), run by Yade. Environment: START (folder of a start),
-STEPS, WARM_UP, ROLLING, and for the gate GATE=1, RESTITUTION, STEP, GRAVITY. Prints one JSON line.
+STEPS, WARM_UP, ROLLING, and for the gate GATE=1, RESTITUTION, STEP, GRAVITY,
+ON_WALL. Prints one JSON line.
 
 Hertz-Mindlin with the dashpot of LIGGGHTS' hertz: betan = betas = sqrt(5/6) beta(e). Yade cuts the pulling part of the
 dashpot off and takes the normal dashpot for shear, too; its rolling cap is eta times the mean radius."""
@@ -21,7 +22,7 @@ with open(env["START"] + "/" + scene["sources"][0]["file"], encoding="ascii") as
     for row in csv.DictReader(file):
         x, v, w = ([float(row[f"{name}{axis}{unit}"]) for axis in "xyz"]
                    for name, unit in (("", "_m"), ("v", "_m_s"), ("w", "_rad_s")))
-        sphere = utils.sphere(Vector3(*x), 1.25e-3 * float(row["scale"]), material=material)
+        sphere = utils.sphere(Vector3(*x), 1.25e-3 * float(row.get("scale", 1)), material=material)
         sphere.state.vel, sphere.state.angVel = Vector3(*v), Vector3(*w)
         O.bodies.append(sphere)
         count += 1
@@ -34,8 +35,10 @@ for axis, position, sense in walls:
 damp = math.sqrt(5 / 6) * -math.log(restitution) / math.hypot(math.pi, math.log(restitution))
 physics = Ip2_FrictMat_FrictMat_MindlinPhys(betan=damp, betas=damp)
 if rolling > 0:
-    # Half of the rolling friction: between equal spheres the mean radius is twice the effective one.
-    physics.eta, physics.krot = 0.5 * rolling, 500 * (1.25e-3 / 2) ** 2
+    # Cap and spring on the effective radius: half of the mean one between equal spheres, the radius itself at a wall. There
+    # is one number for both: right for pairs, and in the gate, where a ball rolls on a wall, right for that.
+    share = 1 if env.get("ON_WALL") == "1" else 0.5
+    physics.eta, physics.krot = share * rolling, 500 * (share * 1.25e-3) ** 2
 O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
              InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()], [physics],
                              [Law2_ScGeom_MindlinPhys_Mindlin(includeMoment=rolling > 0)]),
