@@ -1,7 +1,8 @@
 // bench_public.cpp: cases others have published figures for: penetration (B4) and drum (B5) of Dosta et al. (2024,
 // Comput. Phys. Commun. 296, 109066), chute (B7) as the granular bench of LAMMPS.
 //
-// Beds of stiff grains are settled with soft and slightly larger ones, so that they start without overlaps.
+// Beds of stiff grains are settled in two stages that take far fewer steps: with soft and slightly larger grains, then
+// with grains of the real size, ten times softer than the real ones, which close the gaps.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,17 +16,20 @@ namespace calx {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr double kGrown = 1.01;     // diameter while settling over the real one
-constexpr double kSoftYoung = 2e6;  // Pa, while settling
-constexpr double kSoftStep = 4e-5;  // s, while settling
+constexpr double kGrown = 1.02;  // diameter while settling over the real one: more than the overlaps then
+struct Stage {
+  double young, step, share;  // Pa; s; of the settling time
+};
+constexpr Stage kGrow{1e7, 1.7e-5, 1}, kClose{1e8, 5.4e-6, 0.12};
 
 long long wanted(const BenchOptions& o, long long usual) { return o.particles > 0 ? o.particles : usual; }
 double settle_time(const BenchOptions& o, double usual) { return o.settle >= 0 ? o.settle : usual; }
 
-std::string dosta_materials(bool soft) {
-  return R"({"M1": )" + bench_material(2500, soft ? kSoftYoung : 1e9, 0.2) + R"(, "M2": )" +
-         bench_material(2000, soft ? kSoftYoung : 0.5e9, 0.2) + R"(, "steel": )" +
-         bench_material(7200, soft ? kSoftYoung : 210e9, 0.2) + "}";
+/// young: of all, Pa; 0: their own.
+std::string dosta_materials(double young) {
+  return R"({"M1": )" + bench_material(2500, young > 0 ? young : 1e9, 0.2) + R"(, "M2": )" +
+         bench_material(2000, young > 0 ? young : 0.5e9, 0.2) + R"(, "steel": )" +
+         bench_material(7200, young > 0 ? young : 210e9, 0.2) + "}";
 }
 
 std::string dosta_contacts(double rolling) {
@@ -43,6 +47,17 @@ std::string dosta_contacts(double rolling) {
 
 void scale_seeds(std::vector<Seed>& seeds, double factor) {
   for (Seed& s : seeds) s.scale *= factor;
+}
+
+void settle_stiff(BenchScene& s, double seconds, const BenchOptions& o) {
+  for (const Stage& stage : {kGrow, kClose}) {
+    const double grown = stage.young == kGrow.young ? kGrown : 1;
+    s.materials = dosta_materials(stage.young);
+    s.step = stage.step;
+    for (auto& source : s.sources) scale_seeds(source.seeds, grown);
+    settle(s, stage.share * seconds, o);
+    for (auto& source : s.sources) scale_seeds(source.seeds, 1 / grown);
+  }
 }
 
 void facet(std::ofstream& out, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -104,10 +119,8 @@ BenchScene penetration_scene(const BenchOptions& o) {
   const double shrink = std::min(1.0, std::cbrt(static_cast<double>(count) / 25000)), hx = 0.049 * shrink,
                hy = 0.030 * shrink, floor = -0.0902431, d = 2e-3;
   BenchScene s;
-  s.step = kSoftStep;
   s.lo = {-hx - 0.01, -hy - 0.01, floor - 0.01};
   s.hi = {hx + 0.01, hy + 0.01, 2};
-  s.materials = dosta_materials(true);
   s.contacts = dosta_contacts(o.rolling);
   s.shapes = R"({"grain": {"sphere": {"radius": 0.001}}, "ball": {"sphere": {"radius": )" +
              format_number(0.01 * shrink) + "}}}";
@@ -121,9 +134,7 @@ BenchScene penetration_scene(const BenchOptions& o) {
   } else {
     bed = bench_lattice(count, 2 * hx, 2 * hy, 1.15 * d, 0.06 * d, 12);
     for (Seed& seed : bed) seed.x += Vec3{-hx, -hy, floor};
-    scale_seeds(bed, kGrown);
-    settle(s, settle_time(o, 0.25), o);
-    scale_seeds(bed, 1 / kGrown);
+    settle_stiff(s, settle_time(o, 0.25), o);
   }
   if (!o.save.empty()) write_seeds(o.save, bed);
   double top = floor;
@@ -132,7 +143,7 @@ BenchScene penetration_scene(const BenchOptions& o) {
   ball.x = {0, 0, std::max(0.06, top + 0.015)};
   ball.v = {0, 0, -5};
   s.sources.push_back({"ball", "ball", "steel", {ball}});
-  s.materials = dosta_materials(false);
+  s.materials = dosta_materials(0);
   s.step = 5e-7;
   s.physics = scene_physics(o.name);
   return s;
@@ -146,10 +157,8 @@ BenchScene drum_scene(const BenchOptions& o, const std::string& folder) {
   const auto coarse = static_cast<std::size_t>(std::llround(count * 8 / 38));
   write_drum(folder + "/drum.stl", radius, half);
   BenchScene s;
-  s.step = kSoftStep;
   s.lo = {-radius - 0.01, -half - 0.01, -radius - 0.01};
   s.hi = {radius + 0.01, half + 0.01, radius + 0.01};
-  s.materials = dosta_materials(true);
   s.contacts = dosta_contacts(o.rolling);
   s.shapes = R"({"fine": {"sphere": {"radius": 0.001}}, "coarse": {"sphere": {"radius": 0.002}}})";
   auto part = [&](const std::string& motion) {
@@ -171,12 +180,10 @@ BenchScene drum_scene(const BenchOptions& o, const std::string& folder) {
   for (std::size_t k = 0; k < places.size(); ++k) {
     Seed seed;
     seed.x = places[k];
-    seed.scale = kGrown;
     s.sources[k < coarse ? 0 : 1].seeds.push_back(seed);
   }
-  settle(s, settle_time(o, 0.3), o);
-  for (auto& source : s.sources) scale_seeds(source.seeds, 1 / kGrown);
-  s.materials = dosta_materials(false);
+  settle_stiff(s, settle_time(o, 0.3), o);
+  s.materials = dosta_materials(0);
   s.step = 8e-7;
   s.parts = part(R"("motion": "turn", )");
   s.motions =
