@@ -1,9 +1,9 @@
-// bench.hpp: timed scenes.
+// bench.hpp: the command that runs timed scenes.
 #pragma once
 namespace CLI {
 class App;
 }
 namespace calx {
-/// `calx bench settled|pour`: cases B1 and B2 (spheres of 2.5 mm, Hertz-Mindlin with history, FP64).
+/// `calx bench CASE`: one JSON line or a few lines of text for each run.
 void add_bench_command(CLI::App& app);
 }  // namespace calx

@@ -1,60 +1,30 @@
-"""peers.py: particle-steps per second of Calx, LIGGGHTS and LAMMPS on the same bed, in interleaved rounds.
+"""peers.py: particle-steps per second of Calx and its peers on the same start, in interleaved rounds; against_peers calls it.
 
-Case: spheres of 2.5 mm, 2100 kg/m3, E = 1e7 Pa, nu = 0.25, restitution 0.3, friction 0.5, in a box; step 9.8e-6 s (10 %
-of the Rayleigh time). A start file holds 10 000 spheres on 50 x 50 mm; 100 000 are 5 x 2 copies of it side by side.
-Spins start at zero in all codes. The peers run as Debian packages them (x86-64 baseline, MPI); a code compiled for this
-processor would be faster, so a ratio holds for the Debian build only.
-
-Every round runs all codes once, in an order that rotates, so that slow drift of the machine meets all alike. Timed is the
-second of two runs: the peers' own "Loop time", which leaves out the list built at its start, and Calx's own figure.
-Each result is a line in results/MACHINE.jsonl.
+First the gate (gate.py): a code whose impacts differ from Calx's by more than its limit is not timed. Then every round runs
+all codes once, in an order that rotates, so that slow drift of the machine meets all alike; ratios are taken within a round.
+Each result is a line in results/MACHINE.jsonl. --table measures what the goals name and prints goal beside measurement, then
+the profile of each case.
 """
 import argparse
-import csv
 import datetime
 import json
 import os
 import pathlib
 import re
+import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
 
-import numpy
+import codes
+import gate
+import goals
+import starts
 
 HERE = pathlib.Path(__file__).resolve().parent
-DIAMETER, DENSITY, STEP, SKIN = 2.5e-3, 2100.0, 9.8e-6, 5e-4
-TILES = {10000: (1, 1), 100000: (5, 2)}
-STEPS = {10000: (500, 2000), 100000: (100, 300)}  # warm-up, timed
-
-
-def write_csv(start, path):
-    with open(path, "w", newline="", encoding="ascii") as out:
-        rows = csv.writer(out)
-        rows.writerow(["x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"])
-        rows.writerows([repr(float(value)) for value in row] for row in numpy.hstack([start["x"], start["v"]]))
-
-
-def tiled(start, nx, ny):
-    """nx by ny copies side by side: positions, velocities, footprint."""
-    lx, ly = start["box"][1], start["box"][3]
-    shifts = [(a * lx, b * ly, 0.0) for a in range(nx) for b in range(ny)]
-    return (numpy.vstack([start["x"] + numpy.array(shift) for shift in shifts]),
-            numpy.vstack([start["v"].astype(float)] * len(shifts)), nx * lx, ny * ly)
-
-
-def write_data(x, v, lx, ly, path):
-    """The text form that both peers read: id type diameter density x y z, then id velocity spin."""
-    with open(path, "w", encoding="ascii") as out:
-        out.write(f"start of the bench\n\n{len(x)} atoms\n1 atom types\n"
-                  f"{-DIAMETER:.9g} {lx + DIAMETER:.9g} xlo xhi\n{-DIAMETER:.9g} {ly + DIAMETER:.9g} ylo yhi\n"
-                  f"-0.005 {x[:, 2].max() + 4 * DIAMETER:.9g} zlo zhi\n\nAtoms\n\n")
-        out.writelines(f"{k + 1} 1 {DIAMETER:.9g} {DENSITY:.9g} {p[0]:.12g} {p[1]:.12g} {p[2]:.12g}\n"
-                       for k, p in enumerate(x))
-        out.write("\nVelocities\n\n")
-        out.writelines(f"{k + 1} {p[0]:.9g} {p[1]:.9g} {p[2]:.9g} 0 0 0\n" for k, p in enumerate(v))
+PARTICLES = {"settled": 100000, "pour": 100000, "sizes": 100000, "clumps": 10000, "chute": 32000}
+STEPS = [(20000, 500, 2000), (200000, 100, 300), (1e300, 20, 100)]  # up to so many particles: warm-up, timed
 
 
 def busy_seconds():
@@ -74,44 +44,6 @@ def wait_until_quiet(limit):
             return load
 
 
-def run_peer(code, threads, files, options):
-    program = {"liggghts": "liggghts", "lammps": "lmp"}[code]
-    roll = "off" if code == "liggghts" else "none"
-    if options.rolling > 0:
-        roll = "epsd2" if code == "liggghts" else "sds"
-    variables = {"data": files["data"], "lx": files["lx"], "ly": files["ly"], "dt": STEP, "skin": SKIN,
-                 "warm": options.warm_up, "steps": options.steps, "px": threads, "py": 1, "roll": roll,
-                 "mur": options.rolling}
-    command = [program, "-in", str(HERE / "decks" / f"box.{code}"), "-log", "none"]
-    for name, value in variables.items():
-        command += ["-var", name, str(value)]
-    if threads > 1:
-        command = ["mpirun", "--allow-run-as-root", "--bind-to", "none", "-np", str(threads), *command]
-    env = dict(os.environ, OMP_NUM_THREADS="1", OMPI_MCA_btl_vader_single_copy_mechanism="none")
-    run = subprocess.run(command, capture_output=True, text=True, env=env, cwd=files["folder"], check=False)
-    loops = re.findall(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", run.stdout, re.M)
-    if run.returncode or len(loops) != 2 or int(loops[1][2]) != options.particles:
-        sys.exit(f"{' '.join(command)}\n{(run.stdout + run.stderr)[-2000:]}")
-    wall = float(loops[1][0])
-    version = re.search(r"^(LIGGGHTS|LAMMPS)[^\n]*", run.stdout, re.M)
-    return {"wall_s": wall, "rate": options.particles * int(loops[1][1]) / wall, "version": version[0] if version else ""}
-
-
-def run_calx(threads, files, options):
-    command = [options.calx, "bench", "settled", "--particles", str(options.particles), "--threads", str(threads),
-               "--start", files["csv"], "--warm-up", str(options.warm_up), "--steps", str(options.steps), "--json"]
-    if options.rolling > 0:
-        command += ["--rolling", str(options.rolling)]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    if run.returncode:
-        sys.exit(f"{' '.join(command)}\n{run.stderr}")
-    line = json.loads(run.stdout.strip().splitlines()[-1])
-    if line["particles"] != options.particles:
-        sys.exit(f"{' '.join(command)}\nran {line['particles']} particles, not {options.particles}")
-    return {"wall_s": line["wall_s"], "rate": line["particle_steps_per_second"],
-            "version": f"Calx {line['calx']} ({line['git']})", "calx": line}
-
-
 def machine_name():
     text = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
     model = re.search(r"^model name\s*:\s*(.*)$", text, re.M)
@@ -119,71 +51,166 @@ def machine_name():
     return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-") + f"-{os.cpu_count()}"
 
 
-def table(results, codes, threads):
-    """Median and spread per code, and the median over rounds of Calx against each peer."""
-    lines = []
-    for n in threads:
-        rate = {code: [r["rate"] for r in results if r["code"] == code and r["threads"] == n] for code in codes}
-        for code in codes:
-            middle = statistics.median(rate[code])
-            line = (f"{n} thread{'s' if n > 1 else ' '}  {code:9s} {middle / 1e6:8.3f} M particle-steps/s"
-                    f"  from {min(rate[code]) / 1e6:.3f} to {max(rate[code]) / 1e6:.3f} in {len(rate[code])}")
-            if code != "calx" and "calx" in codes:
-                ratios = [a / b for a, b in zip(rate["calx"], rate[code])]
-                line += f"  Calx/{code} {statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
-            lines.append(line)
-    return "\n".join(lines)
+def record(options, result):
+    if options.dry:
+        return
+    out = HERE / "results" / f"{options.machine}.jsonl"
+    out.parent.mkdir(exist_ok=True)
+    with open(out, "a", encoding="ascii") as lines:
+        lines.write(json.dumps(result) + "\n")
+
+
+class Job:
+    """One cell of a table: a code on a case. name: how it is called in the table."""
+
+    def __init__(self, case, code, particles, threads=1, rolling=0.0, law="", extra=(), name=""):
+        self.case, self.code, self.particles, self.threads, self.rolling = case, code, particles, threads, rolling
+        self.law, self.extra = law, tuple(extra)
+        self.name = name or (code + (f" {law}" if law and code == "calx" else ""))
+        self.results = []
+
+    def run(self, options, number):
+        files = starts.prepare(options, self.case, self.particles, self.rolling, self.law)
+        warm_up, steps = next((w, s) for most, w, s in STEPS if self.particles <= most)
+        if self.code == "yade":
+            warm_up, steps = warm_up // 10, steps // 10
+        warm_up, steps = options.warm_up or warm_up, options.steps or steps
+        load = wait_until_quiet(options.quiet)
+        found = codes.run(self.code, self.case, self.threads, files, options, steps, warm_up, self.rolling, self.extra)
+        self.results.append({"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+                             "machine": options.machine, "round": number, "case": self.case, "code": self.code,
+                             "threads": self.threads, "particles": files["particles"], "state": options.state,
+                             "rolling": self.rolling, "law": self.law, "extra": list(self.extra), "steps": steps,
+                             "warm_up": warm_up, "busy_before": round(load, 2), **found})
+        record(options, self.results[-1])
+        print(f"round {number + 1}, {self.case}, {files['particles']} particles, {self.threads} threads, {self.name}: "
+              f"{found['rate'] / 1e6:.3f} M particle-steps/s (busy before: {load:.2f} processors)", file=sys.stderr)
+
+    def values(self, key="rate"):
+        return [r["calx"][key] if key not in r and "calx" in r else r[key] for r in self.results]
+
+
+def rounds(jobs, options, number):
+    """Runs the jobs number times, interleaved, and keeps them in options.done. A job that its code refuses is left out, with the reason on stderr."""
+    options.__dict__.setdefault("done", []).append(jobs)
+    alive = list(jobs)
+    for n in range(number):
+        for job in alive[n % max(1, len(alive)):] + alive[:n % max(1, len(alive))]:
+            try:
+                job.run(options, n)
+            except codes.Refused as reason:
+                print(f"left out: {job.name}: {reason}", file=sys.stderr)
+                job.results = []
+                alive = [other for other in alive if other is not job]
+    return jobs
+
+
+def passing(wanted, case, rolling, options):
+    """Codes that come through the gate; Calx always does. Prints the gate, once for each law."""
+    out, checked = [], options.__dict__.setdefault("checked", {})
+    for code in wanted:
+        if code != "calx" and code in codes.PEERS[case]:
+            if shutil.which(codes.PROGRAMS[code]) is None:
+                print(f"left out: {code} is not installed")
+                continue
+            law = "linear" if case == "chute" else "hertz"
+            if (code, law, rolling) not in checked:
+                checked[code, law, rolling] = gate.check(code, case, rolling, options)
+                print("\n".join(checked[code, law, rolling][1]), flush=True)
+            passed, _ = checked[code, law, rolling]
+            if not passed:
+                print(f"left out: {code} does not pass the gate")
+                continue
+        if code == "calx" or code in codes.PEERS[case]:
+            out.append(code)
+    return out
+
+
+def spread(values):
+    return f"{statistics.median(values) / 1e6:8.3f} M/s  from {min(values) / 1e6:.3f} to {max(values) / 1e6:.3f}"
+
+
+def show(jobs):
+    """Median and spread of each job, Calx over each peer round by round, and what stands beside speed."""
+    ours = next((job for job in jobs if job.code == "calx" and job.results), None)
+    for job in jobs:
+        if not job.results:
+            continue
+        line = (f"{job.threads} thread{'s' if job.threads > 1 else ' '}  {job.particles:8d}  {job.name:24s} "
+                f"{spread(job.values())}")
+        if job.code != "calx" and ours:
+            ratios = [a / b for a, b in zip(ours.values(), job.values())]
+            line += f"  Calx/{job.name} {statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})"
+        last = job.results[-1]
+        print(line)
+        if "calx" in last:
+            c = last["calx"]
+            print(f"      per particle: {c['pairs_per_particle']:.3f} pair contacts, {c['walls_per_particle']:.3f} wall contacts, "
+                  f"{c['entries_per_particle']:.2f} list entries; {c['rebuilds']} rebuilds; bytes per sphere "
+                  f"{c['bytes_per_sphere']:.0f} counted, {c['peak_bytes_per_sphere']:.0f} at the peak")
+            print("      shares: " + ", ".join(f"{k[6:]} {100 * v:.1f} %" for k, v in c.items() if k.startswith("share_")) +
+                  f"; coordination {c['coordination']:.3f}, floor force / weight {c['floor_over_weight']:.3f}")
+        else:
+            note = [f"{last['entries_per_particle']:.2f} list entries per particle" if "entries_per_particle" in last else "",
+                    f"{last['rebuilds']} rebuilds" if "rebuilds" in last else "",
+                    f"coordination {last['coordination']:.3f}" if "coordination" in last else "",
+                    f"peak {last['peak_bytes'] / 1e6:.0f} MB a process"]
+            print("      " + "; ".join(word for word in note if word))
+
+
+def compare(options):
+    particles = options.particles or PARTICLES[options.case]
+    wanted = passing(options.codes or ["calx", *codes.PEERS[options.case]], options.case, options.rolling, options)
+    if "yade" in wanted and options.codes is None and (options.case != "settled" or particles > 10000):
+        wanted.remove("yade")  # far behind, so minutes a run; --codes asks for it
+    laws = ["calx.hertz-mindlin", "calx.epam"] if options.case == "clumps" else [""]
+    for threads in options.threads:
+        jobs = [Job(options.case, code, particles, threads, options.rolling, law) for code in wanted
+                for law in (laws if code == "calx" else laws[:1])]
+        rounds(jobs, options, options.rounds)
+        print(f"{options.case}, {particles} particles, rolling friction {options.rolling:g}, {options.machine}")
+        show(jobs)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--calx", required=True, help="the program")
-    parser.add_argument("--data", default=str(HERE / "data"), help="folder of start files A10k_STATE.npz")
-    parser.add_argument("--state", default="settled", help="settled or mid (filling)")
-    parser.add_argument("--particles", type=int, default=10000, choices=sorted(TILES))
+    parser.add_argument("--case", default="settled", choices=sorted(PARTICLES))
+    parser.add_argument("--state", default="settled", choices=["settled", "mid"],
+                        help="tile of settled and pour: at rest, or 43 %% packed and falling")
+    parser.add_argument("--particles", type=int, help="default: 100 000; clumps 10 000, chute 32 000")
     parser.add_argument("--threads", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--rolling", type=float, default=0.0, help="rolling friction; 0 for none")
-    parser.add_argument("--codes", nargs="+", default=["calx", "liggghts", "lammps"],
-                        choices=["calx", "liggghts", "lammps"])
-    parser.add_argument("--steps", type=int, help="timed steps (default 2000, or 300 for 100 000 particles)")
-    parser.add_argument("--warm-up", type=int, help="steps before (default 500, or 100)")
+    parser.add_argument("--codes", nargs="+", choices=["calx", "liggghts", "lammps", "yade"],
+                        help="default: all that can do the case; Yade, if installed, for settled with 10 000 "
+                        "particles only")
+    parser.add_argument("--steps", type=int, help="timed steps")
+    parser.add_argument("--warm-up", type=int, help="steps before")
     parser.add_argument("--quiet", type=float, default=60, help="seconds to wait for an idle machine before each run")
     parser.add_argument("--machine", default=machine_name())
+    parser.add_argument("--gate", action="store_true", help="the gate only")
+    parser.add_argument("--table", action="store_true", help="measure every goal, with few rounds, and print the table")
+    parser.add_argument("--law-inlined", help="the program bench_law_inlined (default: beside calx)")
     parser.add_argument("--dry", action="store_true", help="few steps, one round, nothing recorded: only a check")
     options = parser.parse_args()
-    warm_up, steps = STEPS[options.particles]
-    options.warm_up, options.steps = options.warm_up or warm_up, options.steps or steps
+    options.calx = str(pathlib.Path(options.calx).resolve())
+    options.law_inlined = options.law_inlined or str(pathlib.Path(options.calx).parent / "bench_law_inlined")
     if options.dry:
         options.warm_up, options.steps, options.rounds, options.quiet = 2, 10, 1, 0
-
-    results = []
-    with tempfile.TemporaryDirectory() as folder:
-        start = numpy.load(pathlib.Path(options.data, f"A10k_{options.state}.npz"))
-        x, v, lx, ly = tiled(start, *TILES[options.particles])
-        files = {"folder": folder, "csv": f"{folder}/start.csv", "data": f"{folder}/start.data", "lx": lx, "ly": ly}
-        write_csv(start, files["csv"])
-        write_data(x, v, lx, ly, files["data"])
-        for number in range(options.rounds):
-            order = options.codes[number % len(options.codes):] + options.codes[:number % len(options.codes)]
-            for threads in options.threads:
-                for code in order:
-                    load = wait_until_quiet(options.quiet)
-                    found = run_calx(threads, files, options) if code == "calx" else run_peer(code, threads, files, options)
-                    results.append({"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-                                    "machine": options.machine, "round": number, "code": code, "threads": threads,
-                                    "particles": options.particles, "state": options.state, "rolling": options.rolling,
-                                    "steps": options.steps, "warm_up": options.warm_up, "busy_before": round(load, 2),
-                                    **found})
-                    print(f"round {number + 1}, {threads} threads, {code}: {found['rate'] / 1e6:.3f} M particle-steps/s"
-                          f" (busy before: {load:.2f} processors)", file=sys.stderr)
-                    if not options.dry:
-                        out = HERE / "results" / f"{options.machine}.jsonl"
-                        out.parent.mkdir(exist_ok=True)
-                        with open(out, "a", encoding="ascii") as lines:
-                            lines.write(json.dumps(results[-1]) + "\n")
-    print(f"{options.particles} spheres, {options.state}, rolling friction {options.rolling:g}, {options.machine}")
-    print(table(results, options.codes, options.threads))
+        print("a check only: these times mean nothing")
+    with tempfile.TemporaryDirectory() as scratch:
+        options.scratch = scratch
+        if options.gate:
+            passing(options.codes or codes.PEERS[options.case], options.case, options.rolling, options)
+        elif options.table:
+            goals.table(options, Job, rounds, passing)
+            for jobs in options.done:
+                if any(job.results for job in jobs):
+                    print(f"\n{jobs[0].case}, rolling friction {jobs[0].rolling:g}")
+                    show(jobs)
+        else:
+            compare(options)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,141 @@
+"""goals.py: the goals of speed and memory, each measured with few rounds: goal, median, spread, met or not."""
+import json
+import statistics
+
+import codes
+import starts
+
+ROUNDS = 3
+LATE = 2.2                        # s, in the third cycle of the example
+REST = "/rest={}"                 # how a case asks for quiescent regions to be skipped
+
+
+class Table:
+    def __init__(self):
+        self.rows = []
+
+    def add(self, goal, values, limit, unit, at_least=True, note=""):
+        """values: one a round; empty: not measured, and note says why."""
+        if not values:
+            self.rows.append((goal, "-", "-", "not measured", note))
+            return
+        middle = statistics.median(values)
+        met = middle >= limit if at_least else middle <= limit
+        self.rows.append((goal, f"{middle:.3g} {unit}".strip(), f"{min(values):.3g} to {max(values):.3g}",
+                          "met" if met else "not met", note))
+
+    def show(self):
+        head = ("goal", "median", "spread", "met", "note")
+        widths = [max(len(row[k]) for row in [head, *self.rows]) for k in range(len(head))]
+        for row in [head, tuple("-" * w for w in widths), *self.rows]:
+            print("| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths)) + " |")
+
+
+def millions(job):
+    return [value / 1e6 for value in job.values()]
+
+
+def over_best(ours, peers):
+    """Calx over the fastest peer of each round, and that peer's name."""
+    peers = [peer for peer in peers if peer.results]
+    if not peers or not ours.results:
+        return [], "no peer ran"
+    best = max(peers, key=lambda peer: statistics.median(peer.values()))
+    return [a / b for a, b in zip(ours.values(), best.values())], f"against {best.name}"
+
+
+def beds(table, options, job, rounds, passing, size):
+    """B1 with and without rolling resistance, two threads, mixed precision; B2."""
+    two = {}
+    for rolling, goal, ratio in ((0.0, 20, 3.3), (0.1, 14, 3.0)):
+        wanted = [c for c in passing(["liggghts", "lammps"], "settled", rolling, options)]
+        ours = job("settled", "calx", size, rolling=rolling)
+        peers = [job("settled", code, size, rolling=rolling) for code in wanted]
+        jobs = [ours, *peers]
+        if rolling == 0:
+            two = {"double": job("settled", "calx", size, threads=2, name="calx, 2 threads"),
+                   "mixed": job("settled", "calx", size, threads=2, extra=["--precision", "mixed"],
+                                name="calx, mixed, 2 threads")}
+            jobs += two.values()
+        rounds(jobs, options, options.table_rounds)
+        name = "B1" + (", rolling resistance" if rolling else "")
+        table.add(f"{name}: at least {goal} M particle-steps/s on one core", millions(ours), goal, "M/s")
+        values, note = over_best(ours, peers)
+        table.add(f"{name}: at least {ratio} times the best peer", values, ratio, "", note=note)
+        if rolling == 0:
+            table.add("B1: two threads at least 1.9 times one", [a / b for a, b in zip(two["double"].values(), ours.values())],
+                      1.9, "")
+            table.add("B1 mixed, two threads: at least 70 M particle-steps/s", millions(two["mixed"]), 70, "M/s",
+                      note="" if two["mixed"].results else "mixed precision is refused")
+    ours = job("pour", "calx", size)
+    peers = [job("pour", code, size) for code in passing(["liggghts", "lammps"], "pour", 0.0, options)]
+    rounds([ours, *peers], options, options.table_rounds)
+    values, note = over_best(ours, peers)
+    table.add("B2: at least 3.3 times the best peer", values, 3.3, "", note=note)
+    table.add("B2: list work at most 5 % of the time", [100 * v for v in ours.values("share_neighbour")], 5, "%", False)
+
+
+def clumps(table, options, job, rounds, passing):
+    size = options.table_clumps
+    epam, hertz = (job("clumps", "calx", size, law=law) for law in ("calx.epam", "calx.hertz-mindlin"))
+    peers = [job("clumps", code, size, law="calx.hertz-mindlin") for code in passing(["liggghts"], "clumps", 0.0, options)]
+    rounds([epam, hertz, *peers], options, options.table_rounds)
+    table.add("B9 EpAM: at least 6 M clump-steps/s on one core", millions(epam), 6, "M/s")
+    values, note = over_best(epam, peers)
+    table.add("B9 EpAM: at least 3 times LIGGGHTS multisphere", values, 3, "", note=note + ", which runs Hertz")
+    values, note = over_best(hertz, peers)
+    table.add("B9 Hertz-Mindlin, beside the goal", values, 3, "", note=note)
+
+
+def growth(table, options, job, rounds):
+    jobs = [job("settled", "calx", size) for size in options.table_sizes]
+    rounds(jobs, options, options.table_rounds)
+    table.add(f"ns per particle-step from {options.table_sizes[0]} to {options.table_sizes[-1]}: grows at most 1.3 times",
+              [small / large for small, large in zip(jobs[0].values(), jobs[-1].values())], 1.3, "", False,
+              ", ".join(f"{n:g}: {1e9 / statistics.median(j.values()):.1f} ns" for n, j in zip(options.table_sizes, jobs)))
+    table.add(f"bytes per sphere at {options.table_sizes[-1]}: at most 400, peak of the process",
+              jobs[-1].values("peak_bytes_per_sphere"), 400, "", False,
+              f"{statistics.median(jobs[-1].values('bytes_per_sphere')):.0f} counted")
+
+
+def law(table, options):
+    try:
+        text, _ = codes.output([options.law_inlined, 3 if options.dry else 1000])
+    except (OSError, codes.Refused) as reason:
+        table.add("law through the ABI at most 1.03 times the law compiled in", [], 1.03, "", False, str(reason)[:60])
+        return
+    for line in map(json.loads, text.splitlines()):
+        table.add(f"{line['law']} {line['scalar']} through the ABI at most 1.03 times the law compiled in", [line["ratio"]],
+                  1.03, "", False, f"one loop over all rows: {line['ratio_to_one_loop']:.3f}")
+
+
+def rest(table, options):
+    """B10 with quiescent regions skipped and without."""
+    goal = "B10 with rest on, late in a fill: at least 3 times off"
+    case = starts.HERE.parent.parent / "examples/canister_fill/first_fill.json"
+    command = [options.calx, "bench", "fill", "--case", case, "--json", "--steps", options.steps or 2000]
+    try:
+        codes.output([*command, "--steps", 1, "--warm-up", 0, "--set", REST])
+    except codes.Refused:
+        table.add(goal, [], 3, "", note="\"rest\" is refused")
+        return
+    at = ["--at", 0 if options.dry else LATE]
+    off, on = (json.loads(codes.output([*command, *at, *extra])[0]) for extra in ([], ["--set", REST]))
+    table.add(goal, [on["particle_steps_per_second"] / off["particle_steps_per_second"]], 3, "",
+              note=f"canister {on.get('mass_in_canister_kg')} kg with, {off.get('mass_in_canister_kg')} kg without")
+
+
+def table(options, job, rounds, passing):
+    """Measures all and prints the table."""
+    options.table_rounds = 1 if options.dry else min(options.rounds, ROUNDS)
+    options.table_sizes = [10000] if options.dry else [10000, 100000, 1000000]
+    options.table_clumps = 300 if options.dry else 10000
+    out = Table()
+    beds(out, options, job, rounds, passing, 10000 if options.dry else 100000)
+    clumps(out, options, job, rounds, passing)
+    growth(out, options, job, rounds)
+    law(out, options)
+    rest(out, options)
+    print(f"\n{options.machine}, {options.table_rounds} rounds" + (", a check only: these times mean nothing" if options.dry
+                                                                  else ""))
+    out.show()
