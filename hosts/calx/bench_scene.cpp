@@ -94,9 +94,7 @@ std::string write_scene(const BenchScene& s, const std::string& folder) {
   return folder + "/case.json";
 }
 
-CaseFile read_scene(const std::string& path, const BenchOptions& options) {
-  return read_case(path, options.overrides);
-}
+CaseFile read_scene(const std::string& path, const BenchOptions& options) { return read_case(path, options.overrides); }
 
 void settle(BenchScene& scene, double seconds, const BenchOptions& options) {
   const auto steps = static_cast<long long>(std::llround(seconds / scene.step));
