@@ -32,6 +32,7 @@ Engine::~Engine() = default;
 void Engine::prepare(int threads) {
   threads_ = std::max(1, threads);
   kernels_ = &step_kernels();
+  particles.keeps_wrench = options.verlet;
   history_ = {};
   for (const LawList* list : laws)
     if (list && list->state_count > history_.columns) history_.columns = list->state_count;

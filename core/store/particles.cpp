@@ -1,6 +1,8 @@
 // particles.cpp: insertion, removal, reordering and saving of particles.
 #include "store/particles.hpp"
 
+#include "base/error.hpp"
+
 namespace calx {
 namespace {
 
@@ -37,7 +39,7 @@ std::size_t Particles::insert(std::uint32_t shape_index, std::uint32_t material_
   const std::size_t rank = body.size();
   body.push_back(b);
   turn.push_back(q);
-  wrench.push_back({});
+  if (keeps_wrench) wrench.push_back({});
   id.push_back(next_id++);
   shape.push_back(shape_index);
   material.push_back(material_index);
@@ -70,7 +72,7 @@ void Particles::permute(const std::vector<std::uint32_t>& order) {
   if (has_clumps) spheres = sphere_order(*this, order);
   take(body, order);
   take(turn, order);
-  take(wrench, order);
+  if (keeps_wrench) take(wrench, order);
   take(id, order);
   take(shape, order);
   take(material, order);
@@ -130,12 +132,17 @@ void Particles::load(const StateReader& in) {
   const std::size_t n = ids.size();
   body.resize(n);
   turn.resize(n);
-  wrench.resize(n);
+  wrench.resize(keeps_wrench ? n : 0);
   for (std::size_t k = 0; k < n; ++k) {
     const double* b = records.data() + 12 * k;
     body[k] = {b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7], b[8], b[9], b[10], b[11]};
     const double* q = turns.data() + 4 * k;
     turn[k] = {q[0], q[1], q[2], q[3]};
+  }
+  if (keeps_wrench && wrenches.size() != 6 * n)
+    throw Error(Fault::files,
+                "checkpoint: it was written by another integrator; verlet needs the forces of its last step");
+  for (std::size_t k = 0; k < wrench.size(); ++k) {
     const double* w = wrenches.data() + 6 * k;
     wrench[k] = {w[0], w[1], w[2], w[3], w[4], w[5]};
   }

@@ -56,7 +56,7 @@ struct Particles {
   // One row per particle, rank order.
   Column<Record> body;
   Column<Quat> turn;                                        // principal frame to world
-  Column<Wrench> wrench;                                    // sums of the last step; kept by verlet only
+  Column<Wrench> wrench;                                    // sums of the last step; empty unless keeps_wrench
   Column<std::uint32_t> id, shape, material, first_sphere;  // first_sphere has count()+1 entries
   Column<double> scale;
   // One row per sphere. When every shape is a single sphere the spheres are the bodies and this array is empty.
@@ -66,6 +66,7 @@ struct Particles {
   std::vector<Shape> shapes;
   std::vector<double> density;  // kg/m^3, per material
   bool has_clumps = false;
+  bool keeps_wrench = false;  // verlet needs the sums of the step before
   std::uint32_t next_id = 0, next_sphere_id = 0;
 
   std::size_t count() const { return body.size(); }

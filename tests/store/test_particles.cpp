@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "base/error.hpp"
 #include "base/random.hpp"
 #include "store/particles.hpp"
 #include "support/memory_state.hpp"
@@ -20,8 +21,9 @@ Vec3 random_vec(Random& r, double size) {
 }
 
 /// Spheres, pairs and triples, two materials.
-Particles mixture(std::size_t count) {
+Particles mixture(std::size_t count, bool keeps_wrench = false) {
   Particles p;
+  p.keeps_wrench = keeps_wrench;
   p.shapes = {make_shape("ball", {{{}, 1e-3}}), make_shape("pair", {{{}, 1e-3}, {{1e-3, 0, 0}, 0.8e-3}}),
               make_shape("triple", {{{}, 1e-3}, {{1e-3, 0, 0}, 1e-3}, {{0, 1.2e-3, 0}, 0.7e-3}})};
   p.density = {2000, 7800};
@@ -145,12 +147,12 @@ TEST_CASE("particles of one sphere are their own spheres") {
 }
 
 TEST_CASE("saved particles come back to the bit, with their counters") {
-  Particles p = mixture(17);
+  Particles p = mixture(17, true);
   p.remove({0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   for (std::size_t k = 0; k < p.count(); ++k) p.wrench[k] = {1.0 / double(k + 1), 2, 3, 4, 5, 6.5};
   MemoryState state;
   p.save(state);
-  Particles q = mixture(0);
+  Particles q = mixture(0, true);
   q.load(state);
   REQUIRE(q.count() == 16);
   CHECK(q.next_id == 17);
@@ -171,4 +173,16 @@ TEST_CASE("saved particles come back to the bit, with their counters") {
     CHECK(q.member[s].r == p.member[s].r);
   }
   check_members(q);
+}
+
+TEST_CASE("forces of the last step are kept where they are needed, and a checkpoint without them is refused there") {
+  const Particles p = mixture(5);
+  CHECK(p.wrench.empty());
+  MemoryState state;
+  p.save(state);
+  Particles euler = mixture(0), verlet = mixture(0, true);
+  euler.load(state);
+  CHECK(euler.count() == 5);
+  CHECK(euler.wrench.empty());
+  CHECK_THROWS_WITH_AS(verlet.load(state), doctest::Contains("written by another integrator"), Error);
 }
