@@ -73,13 +73,13 @@ void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>&
       ++k;
     }
   }
-  if (!old_row.empty()) carry_history(spec, old_rank, old_row, old_j, old_touching, old_history);
+  if (!old_row.empty()) carry_history(p, spec, old_rank, old_row, old_j, old_touching, old_history);
   link_chunks();
 }
 
-void PairList::carry_history(const HistorySpec& spec, const std::uint32_t* old_rank, const Column<std::size_t>& old_row,
-                             const Column<std::uint32_t>& old_j, const Column<std::uint8_t>& old_touching,
-                             const Column<double>& old_history) {
+void PairList::carry_history(const Particles& particles, const HistorySpec& spec, const std::uint32_t* old_rank,
+                             const Column<std::size_t>& old_row, const Column<std::uint32_t>& old_j,
+                             const Column<std::uint8_t>& old_touching, const Column<double>& old_history) {
   const auto old_count = static_cast<std::uint32_t>(old_row.size() - 1);
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::size_t c = 0; c < chunks.size(); ++c) {
@@ -91,11 +91,17 @@ void PairList::carry_history(const HistorySpec& spec, const std::uint32_t* old_r
         if (old_j[o] != hi) continue;
         touching[e] = old_touching[o];
         if (!touching[e]) break;
-        const bool turned = a > b;
-        for (std::uint32_t k = 0; k < spec.columns; ++k) {
-          const double v = old_history[o * columns + k];
-          history[e * columns + k] = turned && spec.odd[k] ? -v : v;
-        }
+        const double* from = &old_history[o * columns];
+        double* to = &history[e * columns];
+        std::copy(from, from + columns, to);
+        if (a < b) break;
+        std::size_t pair = 0;
+        if (spec.materials > 1)
+          pair = static_cast<std::size_t>(particles.material[particles.owner_of(i[e])]) * spec.materials +
+                 particles.material[particles.owner_of(j[e])];
+        const std::uint8_t* odd = &spec.odd[pair * columns];
+        for (std::uint32_t k = 0; k < columns; ++k)
+          if (odd[k]) to[k] = -to[k];
         break;
       }
     }

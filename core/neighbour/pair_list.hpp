@@ -20,8 +20,10 @@ namespace calx {
 
 /// History columns of contacts: how to start, turn round and end a row.
 struct HistorySpec {
-  std::uint32_t columns = 0;      // the largest count over all law lists
-  std::vector<std::uint8_t> odd;  // changes sign when i and j trade places; per column
+  std::uint32_t columns = 0;    // the largest count over all law lists
+  std::uint32_t materials = 1;  // number of materials that odd tells apart
+  /// Changes sign when i and j trade places: of the ordered material pair (a, b) from (a * materials + b) * columns on.
+  std::vector<std::uint8_t> odd;
 };
 
 struct Chunk {
@@ -57,9 +59,9 @@ class PairList {
  private:
   void make_chunks(const Particles& particles);
   void link_chunks();
-  void carry_history(const HistorySpec& spec, const std::uint32_t* old_rank, const Column<std::size_t>& old_row,
-                     const Column<std::uint32_t>& old_j, const Column<std::uint8_t>& old_touching,
-                     const Column<double>& old_history);
+  void carry_history(const Particles& particles, const HistorySpec& spec, const std::uint32_t* old_rank,
+                     const Column<std::size_t>& old_row, const Column<std::uint32_t>& old_j,
+                     const Column<std::uint8_t>& old_touching, const Column<double>& old_history);
   Column<std::size_t> row_;  // first entry of each sphere; one more at the end
   CellSearch search_;
   std::vector<std::uint32_t> run_start_;  // first sphere of each chunk; one more at the end

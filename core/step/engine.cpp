@@ -36,21 +36,10 @@ void Engine::prepare(int threads) {
   history_ = {};
   for (const LawList* list : laws)
     if (list && list->state_count > history_.columns) history_.columns = list->state_count;
-  history_.odd.assign(history_.columns, 0);
-  // A column may belong to different laws in different material pairs; a turn of i and j needs each pair's own flags
-  // only when the lists disagree, which a common flag table cannot express.
-  for (std::uint32_t k = 0; k < history_.columns; ++k) {
-    bool first = true;
-    for (const LawList* list : laws) {
-      if (!list || k >= list->state_count) continue;
-      if (!first && (list->odd[k] != 0) != (history_.odd[k] != 0))
-        throw Error(Fault::settings, "contacts: two material pairs use laws whose history column " +
-                                         std::to_string(k + 1) +
-                                         " differs in sign symmetry; name the laws of both pairs in the same order");
-      history_.odd[k] = list->odd[k];
-      first = false;
-    }
-  }
+  history_.materials = std::max(1u, material_count);
+  history_.odd.assign(laws.size() * history_.columns, 0);
+  for (std::size_t pair = 0; pair < laws.size(); ++pair)
+    if (laws[pair]) std::copy(laws[pair]->odd.begin(), laws[pair]->odd.end(), &history_.odd[pair * history_.columns]);
   workers_.clear();
   for (int k = 0; k < threads_; ++k) workers_.push_back(std::make_unique<Worker>(history_.columns));
   part_bounds_.clear();

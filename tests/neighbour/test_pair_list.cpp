@@ -187,7 +187,14 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
     Particles& p = c.particles;
     HistorySpec spec;
     spec.columns = 3;
-    spec.odd = {0, 1, 0};
+    // Laws of different sign symmetry for each pair of two materials.
+    spec.materials = 2;
+    const std::vector<std::vector<std::uint8_t>> odd_of = {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+    for (const auto& odd : odd_of) spec.odd.insert(spec.odd.end(), odd.begin(), odd.end());
+    for (std::size_t k = 0; k < p.count(); ++k) p.material[k] = static_cast<std::uint32_t>(k % 2);
+    auto odd = [&](std::uint32_t i, std::uint32_t j, int k) {
+      return odd_of[2 * p.material[p.owner_of(i)] + p.material[p.owner_of(j)]][static_cast<std::size_t>(k)] != 0;
+    };
     PairList list;
     list.build(p, c.wrap, c.margin, c.smallest_margin, spec, nullptr);
     // History named by the ids of the spheres; every third entry does not touch.
@@ -197,7 +204,7 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
       const std::uint32_t a = p.sphere_id[list.i[e]], b = p.sphere_id[list.j[e]];
       for (int k = 0; k < 3; ++k)
         list.history[e * list.columns + static_cast<std::size_t>(k)] =
-            k == 1 && a > b ? -value(b, a, k) : value(std::min(a, b), std::max(a, b), k);
+            (odd(list.i[e], list.j[e], k) && a > b ? -1 : 1) * value(std::min(a, b), std::max(a, b), k);
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> touching;
     for (std::size_t e = 0; e < list.entry_count(); ++e)
@@ -235,7 +242,8 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
       turned += a > b;
       for (int k = 0; k < 3; ++k) {
         const double want = value(std::min(a, b), std::max(a, b), k);
-        CHECK(list.history[e * list.columns + static_cast<std::size_t>(k)] == (k == 1 && a > b ? -want : want));
+        CHECK(list.history[e * list.columns + static_cast<std::size_t>(k)] ==
+              (odd(list.i[e], list.j[e], k) && a > b ? -want : want));
       }
     }
     CHECK(carried > 300);
