@@ -11,22 +11,30 @@
 namespace calx {
 namespace {
 
-using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
-using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
-using FourFloat = float __attribute__((vector_size(16), aligned(4), may_alias));
-using EightFloat = float __attribute__((vector_size(32), aligned(4), may_alias));
+using Four = double __attribute__((vector_size(32)));
+using Two = double __attribute__((vector_size(16)));
+using FourFloat = float __attribute__((vector_size(16)));
+using EightFloat = float __attribute__((vector_size(32)));
 using FourMask = long long __attribute__((vector_size(32)));
 
 #define CALX_INLINE static inline __attribute__((always_inline))
 
-CALX_INLINE Four load(const double* p) { return *reinterpret_cast<const Four*>(p); }
-CALX_INLINE void store(double* p, Four v) { *reinterpret_cast<Four*>(p) = v; }
-CALX_INLINE Two load_two(const double* p) { return *reinterpret_cast<const Two*>(p); }
-CALX_INLINE void store_two(double* p, Two v) { *reinterpret_cast<Two*>(p) = v; }
-CALX_INLINE FourFloat load(const float* p) { return *reinterpret_cast<const FourFloat*>(p); }
-CALX_INLINE void store(float* p, FourFloat v) { *reinterpret_cast<FourFloat*>(p) = v; }
-CALX_INLINE EightFloat load_eight(const float* p) { return *reinterpret_cast<const EightFloat*>(p); }
-CALX_INLINE void store_eight(float* p, EightFloat v) { *reinterpret_cast<EightFloat*>(p) = v; }
+/// Numbers stand where their arrays put them, aligned to themselves only.
+template <class Vector, class Scalar>
+CALX_INLINE Vector read(const Scalar* p) {
+  Vector v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+CALX_INLINE Four load(const double* p) { return read<Four>(p); }
+CALX_INLINE void store(double* p, Four v) { __builtin_memcpy(p, &v, sizeof v); }
+CALX_INLINE Two load_two(const double* p) { return read<Two>(p); }
+CALX_INLINE void store_two(double* p, Two v) { __builtin_memcpy(p, &v, sizeof v); }
+CALX_INLINE FourFloat load(const float* p) { return read<FourFloat>(p); }
+CALX_INLINE void store(float* p, FourFloat v) { __builtin_memcpy(p, &v, sizeof v); }
+CALX_INLINE EightFloat load_eight(const float* p) { return read<EightFloat>(p); }
+CALX_INLINE void store_eight(float* p, EightFloat v) { __builtin_memcpy(p, &v, sizeof v); }
 CALX_INLINE FourFloat narrow(Four v) { return __builtin_convertvector(v, FourFloat); }
 CALX_INLINE Four wide(FourFloat v) { return __builtin_convertvector(v, Four); }
 CALX_INLINE Four all(double x) { return Four{x, x, x, x}; }
@@ -48,10 +56,10 @@ CALX_INLINE unsigned bits_of(FourMask mask) {
 #endif
 }
 
-using FourIndex = std::uint32_t __attribute__((vector_size(16), aligned(4), may_alias));
+using FourIndex = std::uint32_t __attribute__((vector_size(16)));
 
-CALX_INLINE FourIndex load_index(const std::uint32_t* p) { return *reinterpret_cast<const FourIndex*>(p); }
-CALX_INLINE void store_index(std::uint32_t* p, FourIndex v) { *reinterpret_cast<FourIndex*>(p) = v; }
+CALX_INLINE FourIndex load_index(const std::uint32_t* p) { return read<FourIndex>(p); }
+CALX_INLINE void store_index(std::uint32_t* p, FourIndex v) { __builtin_memcpy(p, &v, sizeof v); }
 
 template <class Mask>
 CALX_INLINE unsigned sign_bits(Mask mask) {
