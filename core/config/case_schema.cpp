@@ -294,9 +294,9 @@ std::string case_schema() {
        {"rest",
         object("leaves particles that no longer move out of the steps; without this key nothing is left out",
                {{"after", preset(number("time a particle must have been quiet", "s", above_zero), c.rest.after)},
-                {"displacement", preset(number("way within that time, as a share of the radius, that counts as none",
-                                               "1", above_zero),
-                                        c.rest.displacement)},
+                {"displacement",
+                 preset(number("way within that time, as a share of the radius, that counts as none", "1", above_zero),
+                        c.rest.displacement)},
                 {"force", preset(number("unbalanced force as a share of the weight; beyond it a particle wakes, and it "
                                         "falls asleep below half of it",
                                         "1", above_zero),

@@ -159,6 +159,7 @@ void Engine::check_periodic_lengths() const {
 
 void Engine::rebuild(double dt, bool reorder) {
   const std::size_t spheres = particles.sphere_count();
+  if (rest_) rest_->listed = false;
   if (options.wrap.any()) wrap_positions();
 
   if (count_changed_) {
@@ -419,6 +420,7 @@ std::size_t Engine::memory_bytes() const {
   bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() +
             p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *
            4;
+  if (rest_) bytes += rest_->memory_bytes();
   return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + reference_.capacity() * sizeof(Vec3);
 }
 

@@ -113,7 +113,7 @@ class Engine {
   const EngineTimes& times() const { return times_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
   std::uint64_t touching() const { return touching_; }
-  std::uint64_t asleep() const;  // particles that rest
+  std::uint64_t asleep() const;                                // particles that rest
   double largest_overlap() const { return largest_overlap_; }  // share of the radius, over the run
   std::size_t memory_bytes() const;
   std::uint32_t history_columns() const { return history_.columns; }

@@ -112,8 +112,7 @@ void Engine::sum_pass(std::size_t c) {
       const std::uint32_t from = first_sphere_of(first);
       kernels_->widen(lean_wrench_.data() + from, first_sphere_of(last) - from, sphere_wrench_.data() + from);
     });
-  if (particles.has_clumps)
-    each_live(c, [this](std::uint32_t first, std::uint32_t last) { sum_spheres(first, last); });
+  if (particles.has_clumps) each_live(c, [this](std::uint32_t first, std::uint32_t last) { sum_spheres(first, last); });
 }
 
 void Engine::sum_spheres(std::uint32_t first, std::uint32_t last) {

@@ -120,8 +120,8 @@ bool Engine::law_of_pairs(std::size_t c, Worker& w, const PairBlock& pairs, cons
                                   column(CALX_IN_R_J, radii),
                                   work.arm_i,
                                   work.arm_j};
-  const bool record = kernels.kinematics(spheres.data(), options.wrap.any() ? &options.wrap : nullptr, pairs, largest,
-                                         columns);
+  const bool record =
+      kernels.kinematics(spheres.data(), options.wrap.any() ? &options.wrap : nullptr, pairs, largest, columns);
   kernels.read_history(pairs_.history.data() + pairs_.chunks[c].first_entry * history_.columns, history_.columns, pairs,
                        list.state_count, block.state(0));
   evaluate_block(list, block, dt, t, options.ledger);
@@ -153,10 +153,11 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, co
 
   kernels.write_history(pairs_.history.data() + chunk.first_entry * history_.columns, history_.columns, pairs,
                         list.state_count, block.state(0));
-  kernels.scatter(pairs, {block.in(CALX_IN_NX), block.in(CALX_IN_NY), block.in(CALX_IN_NZ), block.out(CALX_OUT_FX), block.out(CALX_OUT_FY),
-                          block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
-                          block.out(CALX_OUT_MZ), work.arm_i, work.arm_j, sums.data(), chunk.last_sphere,
-                          pairs_.cross.data() + pairs_.first_cross[c], slots.data(), pairs_.slot_used.data()});
+  kernels.scatter(pairs,
+                  {block.in(CALX_IN_NX), block.in(CALX_IN_NY), block.in(CALX_IN_NZ), block.out(CALX_OUT_FX),
+                   block.out(CALX_OUT_FY), block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
+                   block.out(CALX_OUT_MZ), work.arm_i, work.arm_j, sums.data(), chunk.last_sphere,
+                   pairs_.cross.data() + pairs_.first_cross[c], slots.data(), pairs_.slot_used.data()});
   if (!options.ledger) return;
   for (std::uint32_t k = 0; k < n; ++k) {
     result.elastic += block.out(CALX_OUT_ELASTIC)[k];

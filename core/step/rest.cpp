@@ -60,7 +60,8 @@ void Engine::rest_watch_parts(double dt) {
     Rest::PartState& old = rest.parts[k];
     const bool differs =
         part.present != old.present || !same(part.pose.turn, old.turn) || !same(part.pose.shift, old.shift);
-    const bool moving = part.present && (differs || (part.moves && (norm2(part.pose.velocity) > 0 || norm2(part.pose.spin) > 0)));
+    const bool moving =
+        part.present && (differs || (part.moves && (norm2(part.pose.velocity) > 0 || norm2(part.pose.spin) > 0)));
     stirred[k] = differs || moving;
     stopped[k] = old.moving && !moving;
     any |= stirred[k] || stopped[k];
@@ -129,10 +130,9 @@ void Engine::rest_check_awake(std::size_t c) {
       const Vec3 moved = options.wrap.nearest(position(b) - rest.reference[p]);
       rest.reference[p] = position(b);
       const double limit = kCalm * options.rest.force * b.m * g, arm = limit * b.r, way = step * b.r;
-      const bool calm = norm2(moved) <= way * way &&
-                        particles.kinetic_energy(p) <= options.rest.displacement * b.m * g * b.r &&
-                        norm2(force_of(sum) + b.m * options.gravity) <= limit * limit &&
-                        norm2(torque_of(sum)) <= arm * arm;
+      const bool calm =
+          norm2(moved) <= way * way && particles.kinetic_energy(p) <= options.rest.displacement * b.m * g * b.r &&
+          norm2(force_of(sum) + b.m * options.gravity) <= limit * limit && norm2(torque_of(sum)) <= arm * arm;
       rest.quiet[p] = static_cast<std::uint8_t>(calm ? std::min(rest.quiet[p] + 1, kChecks) : 0);
     }
   });
@@ -227,7 +227,8 @@ void Engine::rest_save(StateWriter& out) const {
   out.put("rest/asleep", rest.asleep.data(), rest.asleep.size());
   out.put("rest/quiet", rest.quiet.data(), rest.quiet.size());
   out.put("rest/reference", reinterpret_cast<const double*>(rest.reference.data()), rest.reference.size() * 3, "m");
-  out.put("rest/frozen", reinterpret_cast<const double*>(rest.frozen.data()), rest.frozen.size() * 6, "N,N,N,N m,N m,N m");
+  out.put("rest/frozen", reinterpret_cast<const double*>(rest.frozen.data()), rest.frozen.size() * 6,
+          "N,N,N,N m,N m,N m");
   out.put("rest/elastic", rest.elastic.data(), rest.elastic.size(), "J");
   out.put_count("rest/clock", rest.clock);
   std::vector<double> poses;

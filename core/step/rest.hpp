@@ -18,13 +18,13 @@ struct Engine::RestWalk {
   struct Run {
     std::uint32_t first, last;
   };
-  bool whole = true;                                // no entry is left out
-  std::size_t count = 0;                            // entries to look at; lists of them, see PairScan
+  bool whole = true;      // no entry is left out
+  std::size_t count = 0;  // entries to look at; lists of them, see PairScan
   std::vector<std::uint32_t> i, j, entry, ordinal;
-  std::vector<std::size_t> out_slots, in_slots;     // slots that such entries may write, and that may be read
-  std::vector<Run> awake, live;                     // live: awake, or reached by contacts that are evaluated
-  std::vector<std::uint32_t> border;                // sleepers that are live
-  std::uint64_t pair_contacts = 0;                  // between sleepers
+  std::vector<std::size_t> out_slots, in_slots;  // slots that such entries may write, and that may be read
+  std::vector<Run> awake, live;                  // live: awake, or reached by contacts that are evaluated
+  std::vector<std::uint32_t> border;             // sleepers that are live
+  std::uint64_t pair_contacts = 0;               // between sleepers
   // Contacts of sleepers with parts that stand still.
   std::vector<Wrench> load;
   double wall_elastic = 0;
@@ -53,20 +53,29 @@ struct Engine::Rest {
   Column<std::uint8_t> asleep, quiet;  // quiet: consecutive checks passed
   Column<Vec3> reference;              // m, position at the last check
   Column<Wrench> frozen;
-  Column<double> elastic;    // J, of contacts between sleepers, kept with the owner of the first sphere
-  Column<std::uint8_t> mark;  // all zero between calls
-  std::vector<RestWalk> walks;       // per chunk
-  bool listed = false;               // walks hold what the lists and the sleepers ask for
-  Column<std::uint8_t> open;         // per slot: some contact that is evaluated may write it
+  Column<double> elastic;          // J, of contacts between sleepers, kept with the owner of the first sphere
+  Column<std::uint8_t> mark;       // all zero between calls
+  std::vector<RestWalk> walks;     // per chunk
+  bool listed = false;             // walks hold what the lists and the sleepers ask for
+  Column<std::uint8_t> open;       // per slot: some contact that is evaluated may write it
   std::vector<std::uint8_t> near;  // per chunk, work space
   std::vector<PartState> parts;    // at the last step
   bool parts_move = true;
   std::uint64_t sleepers = 0, clock = 0;  // clock: steps since the start
+
+  std::size_t memory_bytes() const {
+    std::size_t bytes = asleep.capacity() + quiet.capacity() + mark.capacity() + open.capacity();
+    bytes += reference.capacity() * sizeof(Vec3) + frozen.capacity() * sizeof(Wrench) + elastic.capacity() * 8;
+    for (const RestWalk& w : walks)
+      bytes += (w.i.capacity() + w.j.capacity() + w.entry.capacity() + w.ordinal.capacity()) * 4 +
+               (w.out_slots.capacity() + w.in_slots.capacity()) * 8;
+    return bytes;
+  }
 };
 
 /// The walk of chunk c, or null while nothing sleeps.
 inline const Engine::RestWalk* Engine::walk(std::size_t c) const {
-  return rest_ && rest_->sleepers > 0 ? &rest_->walks[c] : nullptr;
+  return rest_ && rest_->listed ? &rest_->walks[c] : nullptr;
 }
 
 /// Calls visit(first, last) for each run of particles of chunk c that are awake.

@@ -81,7 +81,8 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
   for (const std::uint32_t p : all) {
     if (particles.has_clumps) particles.refresh_members(p, p + 1);
     const std::uint32_t first = first_sphere_of(p);
-    if (options.mixed) kernels_->thin(particles.spheres() + first, first_sphere_of(p + 1) - first, lean_.data() + first);
+    if (options.mixed)
+      kernels_->thin(particles.spheres() + first, first_sphere_of(p + 1) - first, lean_.data() + first);
   }
 
   // The sums of all sleepers that touch one that changed are taken anew.
@@ -122,7 +123,8 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
   }
 }
 
-void Engine::rest_capture(const std::vector<std::uint32_t>& some, const std::vector<std::uint32_t>& changed, double dt) {
+void Engine::rest_capture(const std::vector<std::uint32_t>& some, const std::vector<std::uint32_t>& changed,
+                          double dt) {
   Rest& rest = *rest_;
   for (const std::uint32_t p : some) {
     rest.frozen[p] = {};
@@ -162,7 +164,8 @@ void Engine::rest_take_pairs(std::size_t c, Worker& w, const LawList& list, doub
       return w.in_mixed;
     else
       return w.in_double;
-  }();
+  }
+  ();
   auto& out = work.scratch;
   const Record* s = particles.spheres();
   RestWalk& walk = rest_->walks[c];

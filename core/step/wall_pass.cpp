@@ -11,7 +11,7 @@ constexpr double kSameContact = 0.7;
 
 void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt, bool capture) {
   ChunkResult& result = results_[c];
-  const RestWalk* const rest = walk(c);
+  const RestWalk* const rest = capture ? &rest_->walks[c] : walk(c);
   if (!capture) {
     if (rest) {
       result.load = rest->load;
