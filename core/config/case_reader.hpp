@@ -54,6 +54,7 @@ class CaseReader {
   void read_domain(Object& root);
   void read_time(Object& root);
   void read_output(Object& root);
+  void read_rest(Object& root);
   void read_plugins(Object& root);
 
   Document& document_;

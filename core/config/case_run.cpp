@@ -81,6 +81,17 @@ void CaseReader::read_output(Object& root) {
   n.done();
 }
 
+void CaseReader::read_rest(Object& root) {
+  RestSettings& r = case_.rest;
+  r.on = root.has("rest");
+  if (!r.on) return;
+  Object o = root.section("rest", "settings of particles at rest");
+  r.after = o.number("after", "s", r.after, Allow::above_zero);
+  r.displacement = o.number("displacement", "1", r.displacement, Allow::above_zero);
+  r.force = o.number("force", "1", r.force, Allow::above_zero);
+  o.done();
+}
+
 void CaseReader::read_plugins(Object& root) {
   for (const auto& entry : root.section("plugins", "plugin pins by id").entries()) {
     Object o(entry.second, "a plugin pin");
@@ -132,6 +143,7 @@ CaseSettings CaseReader::read() {
   case_.energy_ledger = root.boolean("energy", false);
   read_sensors(root);
   read_output(root);
+  read_rest(root);
   case_.overlap_limit = root.number("overlap_limit", "1", case_.overlap_limit, Allow::above_zero);
   for (const Node& n : root.items("assumptions", "texts"))
     case_.assumptions.push_back(n.text("one assumption in words"));

@@ -165,6 +165,14 @@ struct NeighbourSettings {
   double skin = 0;  // m; 0: 0.1 of the smallest radius... chosen by the engine
 };
 
+/// Particles that no longer move are left out of the steps, where a case asks for it.
+struct RestSettings {
+  bool on = false;
+  double after = 0.02;         // s, quiet for so long
+  double displacement = 1e-3;  // of the radius: moved by no more within "after"
+  double force = 0.1;          // of the weight: out of balance by no more
+};
+
 struct CaseSettings {
   std::string file;    // path of the case, for messages
   std::string folder;  // absolute; relative paths of the case start here
@@ -186,6 +194,7 @@ struct CaseSettings {
   std::vector<SensorSettings> sensors;
   OutputSettings output;
   NeighbourSettings neighbour;
+  RestSettings rest;
   bool energy_ledger = false;  // "energy": true, or a sensor of kind "energy"
   double overlap_limit = 0.5;  // of the radius: beyond it the run stops as a blow-up or a particle gone through a wall
   std::vector<std::string> assumptions;

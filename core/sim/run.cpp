@@ -257,6 +257,7 @@ class Run {
                   p.time, end, 100 * p.share, p.particles, p.particle_steps_per_second * 1e-6,
                   clock_text(p.seconds_left).c_str());
     p.text = text;
+    if (sim_.settings().rest.on) p.text += "  " + std::to_string(sim_.counters().asleep) + " asleep";
     o_.progress(p);
   }
 

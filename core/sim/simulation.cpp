@@ -152,6 +152,7 @@ void build_engine(World& w, const SimulationOptions& options) {
   e.options.ledger = c.energy_ledger;
   e.options.skin = c.neighbour.skin;
   e.options.overlap_limit = c.overlap_limit;
+  e.options.rest = {c.rest.on, c.rest.after, c.rest.displacement, c.rest.force};
   e.laws = w.laws.matrix;
   e.material_count = static_cast<std::uint32_t>(c.materials.size());
   for (const auto& m : c.materials) e.material_names.push_back(m.name);
@@ -281,6 +282,7 @@ Simulation::Counters Simulation::counters() const {
   c.seconds_contacts = e.times().contacts;
   c.seconds_integrate = e.times().integrate;
   c.largest_overlap = e.largest_overlap();
+  c.asleep = e.asleep();
   return c;
 }
 

@@ -103,6 +103,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
   for (const auto& e : facts.events) j["events"].push_back({{"name", e.first}, {"time", e.second}});
   j["largest_overlap_share"] = counters.largest_overlap;
   j["overlap_limit"] = c.overlap_limit;
+  if (c.rest.on) j["asleep"] = counters.asleep;
   j["list_rebuilds"] = counters.rebuilds;
   j["memory_bytes"] = s.memory_bytes();
   j["wall_seconds"] = facts.wall_seconds;

@@ -79,6 +79,7 @@ void Engine::save(StateWriter& out) const {
                          energy_.gravity_work,
                          energy_.wrapped};
   out.put("energy/sums", sums, 11, "J");
+  if (rest_) rest_save(out);
 }
 
 void Engine::load(const StateReader& in) {
@@ -160,6 +161,7 @@ void Engine::load(const StateReader& in) {
     walls_.normal[slot] = {normals[3 * c], normals[3 * c + 1], normals[3 * c + 2]};
     for (std::uint32_t k = 0; k < history_.columns; ++k) walls_.history[k * walls_.stride + slot] = columns[k][c];
   }
+  if (rest_) rest_load(in);
 }
 
 }  // namespace calx

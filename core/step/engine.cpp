@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "step/engine_detail.hpp"
+#include "step/rest.hpp"
 
 namespace calx {
 namespace {
@@ -42,6 +42,8 @@ void Engine::prepare(int threads) {
     if (laws[pair]) std::copy(laws[pair]->odd.begin(), laws[pair]->odd.end(), &history_.odd[pair * history_.columns]);
   workers_.clear();
   for (int k = 0; k < threads_; ++k) workers_.push_back(std::make_unique<Worker>(history_.columns));
+  rest_.reset();
+  if (options.rest.on) rest_ = std::make_unique<Rest>();
   part_bounds_.clear();
   for (const auto& part : parts) part_bounds_.push_back(part.surface->bounds());
   stale_ = true;
@@ -69,10 +71,12 @@ void Engine::missing_law(std::uint32_t a, std::uint32_t b) const {
 void Engine::inserted() {
   list_rank_.resize(particles.sphere_count(), kNone);
   reference_.resize(particles.sphere_count());
+  if (rest_) rest_grow();
   stale_ = count_changed_ = true;
 }
 
 void Engine::remove(const std::vector<std::uint8_t>& mark, double dt) {
+  if (rest_) rest_leave(mark, dt);
   Column<std::uint32_t> kept;
   for (std::size_t k = 0; k < particles.sphere_count(); ++k)
     if (!mark[particles.owner_of(k)]) kept.push_back(list_rank_[k]);
@@ -145,6 +149,7 @@ void Engine::check_periodic_lengths() const {
 
 void Engine::rebuild(double dt, bool reorder) {
   const std::size_t spheres = particles.sphere_count();
+  if (rest_) rest_->listed = false;
   if (options.wrap.any()) wrap_positions();
 
   if (count_changed_) {
@@ -174,6 +179,7 @@ void Engine::rebuild(double dt, bool reorder) {
     }
     list_rank_.swap(ranks);
     particles.permute(order);
+    if (rest_) rest_permute(order);
     sorted_at_ = rebuilds_;
   }
   margin_.resize(particles.count());
@@ -192,6 +198,7 @@ void Engine::rebuild(double dt, bool reorder) {
   used_.assign(pairs_.chunks.size(), 0);
   ++rebuilds_;
   stale_ = count_changed_ = false;
+  if (rest_) rest_relist(dt);
 }
 
 void Engine::size_sums() {
@@ -207,9 +214,10 @@ void Engine::size_sums() {
 }
 
 void Engine::thin_pass(std::size_t c) {
-  const Chunk& chunk = pairs_.chunks[c];
-  kernels_->thin(particles.spheres() + chunk.first_sphere, chunk.last_sphere - chunk.first_sphere,
-                 lean_.data() + chunk.first_sphere);
+  each_awake(c, [this](std::uint32_t first, std::uint32_t last) {
+    const std::uint32_t from = first_sphere_of(first);
+    kernels_->thin(particles.spheres() + from, first_sphere_of(last) - from, lean_.data() + from);
+  });
 }
 
 void Engine::set_haste() {
@@ -225,11 +233,13 @@ void Engine::rebuild_if_stale(double dt) {
   } else if (parts_left_margin()) {
     place_parts(dt, places_);
     walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
+    if (rest_) rest_relist(dt);
   }
   times_.neighbour += now_seconds() - start;
 }
 
 void Engine::begin(double dt) {
+  if (rest_) rest_watch_parts(dt);
   if (!options.verlet) return;
   if (stale_) rebuild(dt, count_changed_);
   const double start = now_seconds();
@@ -250,6 +260,8 @@ void Engine::begin(double dt) {
 
 GuardReport Engine::finish(double t, double dt) {
   omp_set_num_threads(threads_);
+  time_ = t;
+  if (rest_) rest_watch_parts(dt);
   rebuild_if_stale(dt);
   const double start = now_seconds();
   for (auto& r : results_) {
@@ -287,14 +299,15 @@ GuardReport Engine::finish(double t, double dt) {
       if (!forces.empty()) force_pass(c, worker, t, dt);
       if (options.verlet) {
         finish_verlet(c, dt);
-        const Chunk& chunk = pairs_.chunks[c];
-        std::copy(sums().begin() + chunk.first_particle, sums().begin() + chunk.last_particle,
-                  particles.wrench.begin() + chunk.first_particle);
+        each_awake(c, [this](std::uint32_t first, std::uint32_t last) {
+          std::copy(sums().begin() + first, sums().begin() + last, particles.wrench.begin() + first);
+        });
       } else {
         integrate_euler(c, dt);
       }
       if (options.mixed) thin_pass(c);
       guard_pass(c, dt);
+      if (rest_) rest_check_sleepers(c);
     }
   }
   if (failure) std::rethrow_exception(failure);
@@ -340,6 +353,7 @@ GuardReport Engine::finish(double t, double dt) {
     }
   }
   energy_.gravity += energy_.wrapped;
+  if (rest_) rest_update(dt);
   for (std::size_t k = 0; k < load.size(); ++k) {
     parts[k].force = {load[k].fx, load[k].fy, load[k].fz};
     parts[k].torque = {load[k].tx, load[k].ty, load[k].tz};
@@ -396,6 +410,7 @@ std::size_t Engine::memory_bytes() const {
   bytes += (p.id.capacity() + p.shape.capacity() + p.material.capacity() + p.first_sphere.capacity() +
             p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *
            4;
+  if (rest_) bytes += rest_->memory_bytes();
   return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + reference_.capacity() * sizeof(Vec3);
 }
 

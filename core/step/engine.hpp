@@ -43,6 +43,14 @@ struct EngineForce {
   const calx_instance* instance = nullptr;
 };
 
+/// When particles that no longer move are left out; see rest.hpp.
+struct RestOptions {
+  bool on = false;
+  double after = 0;         // s
+  double displacement = 0;  // of the radius, within after
+  double force = 0;         // of the weight
+};
+
 struct EngineOptions {
   Vec3 gravity;
   Wrap wrap;
@@ -52,6 +60,7 @@ struct EngineOptions {
   bool mixed = false;          // pair contacts in single precision, from exact positions
   double skin = 0;             // m, smallest margin of a particle; 0: 0.1 of the smallest radius
   double overlap_limit = 0.5;  // of the radius
+  RestOptions rest;
 };
 
 /// Energies at the instant of the last contacts, J, and what has been lost or put in since the start.
@@ -104,6 +113,7 @@ class Engine {
   const EngineTimes& times() const { return times_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
   std::uint64_t touching() const { return touching_; }
+  std::uint64_t asleep() const;                                // particles that rest
   double largest_overlap() const { return largest_overlap_; }  // share of the radius, over the run
   std::size_t memory_bytes() const;
   std::uint32_t history_columns() const { return history_.columns; }
@@ -125,6 +135,7 @@ class Engine {
  private:
   struct Worker;
   struct ChunkResult;
+  struct Rest;
   void rebuild_if_stale(double dt);
   void rebuild(double dt, bool reorder);
   void wrap_positions();
@@ -136,19 +147,66 @@ class Engine {
   template <class Precision>
   void evaluate_pairs(std::size_t chunk, Worker& worker, const PairBlock& pairs, const LawList& list, double t,
                       double dt);
+  /// Geometry and law of a block; nothing is written but the work space. True if some row may have overlap / (2 r_eff)
+  /// above largest.
+  template <class Precision>
+  bool law_of_pairs(std::size_t chunk, Worker& worker, const PairBlock& pairs, const LawList& list, double largest,
+                    double t, double dt);
   void thin_pass(std::size_t chunk);
   void size_sums();
-  void wall_pass(std::size_t chunk, Worker& worker, double t, double dt);
-  void evaluate_walls(std::size_t chunk, Worker& worker, const LawList& list, double t, double dt);
+  /// capture: contacts of sleepers with still parts, read only; else all others.
+  void wall_pass(std::size_t chunk, Worker& worker, double t, double dt, bool capture = false);
+  void add_wall_contact(Worker& worker, std::uint32_t row, Wrench& sphere, Wrench& load) const;
+  void evaluate_walls(std::size_t chunk, Worker& worker, const LawList& list, double t, double dt, bool capture);
   void sum_pass(std::size_t chunk);
   void force_pass(std::size_t chunk, Worker& worker, double t, double dt);
   void integrate_euler(std::size_t chunk, double dt);
   void book_half(std::size_t chunk, double dt, bool before);
+  void sum_spheres(std::uint32_t first, std::uint32_t last);
   void drift_verlet(std::size_t chunk, double dt);
+  void drift_run(std::size_t chunk, std::uint32_t first, std::uint32_t last, double dt);
   void finish_verlet(std::size_t chunk, double dt);
+  void finish_run(std::size_t chunk, std::uint32_t first, std::uint32_t last, double dt);
   void guard_pass(std::size_t chunk, double dt);
   void guard_each(std::size_t chunk);
   void set_haste();
+  // rest.cpp, rest_change.cpp
+  struct RestWalk;
+  const RestWalk* walk(std::size_t chunk) const;
+  template <class Visit>
+  void each_awake(std::size_t chunk, const Visit& visit);
+  template <class Visit>
+  void each_live(std::size_t chunk, const Visit& visit);
+  std::uint32_t first_sphere_of(std::uint32_t p) const { return particles.has_clumps ? particles.first_sphere[p] : p; }
+  /// Rows for particles that have come.
+  void rest_grow();
+  /// Wakes what touches parts that move, come or go.
+  void rest_watch_parts(double dt);
+  /// Of the wakers and the sleepers to be: changes their state and all that follows from it.
+  void rest_change(std::vector<std::uint32_t>& wake, const std::vector<std::uint32_t>& sleep,
+                   const std::vector<std::uint32_t>& touched, double dt);
+  void rest_near(const std::vector<std::uint32_t>& particles);
+  void rest_capture(const std::vector<std::uint32_t>& affected, const std::vector<std::uint32_t>& changed, double dt);
+  void rest_capture_pairs(std::size_t chunk, Worker& worker, double dt);
+  template <class Precision>
+  void rest_take_pairs(std::size_t chunk, Worker& worker, const LawList& list, double dt);
+  void rest_capture_walls(std::size_t chunk, Worker& worker, double dt);
+  void rest_take_walls(std::size_t chunk, Worker& worker, std::uint32_t count);
+  void rest_entries(std::size_t chunk);
+  void rest_runs(std::size_t chunk);
+  Vec3 rest_unbalanced(std::uint32_t p, Vec3& torque) const;
+  void rest_kick(std::uint32_t p, double dt);
+  void rest_check_sleepers(std::size_t chunk);
+  void rest_check_awake(std::size_t chunk);
+  void rest_calm(std::vector<std::uint32_t>& sleep);
+  void rest_update(double dt);
+  /// Before the particles marked go: what touches them wakes.
+  void rest_leave(const std::vector<std::uint8_t>& mark, double dt);
+  void rest_permute(const std::vector<std::uint32_t>& order);
+  /// After lists were built.
+  void rest_relist(double dt);
+  void rest_save(StateWriter& out) const;
+  void rest_load(const StateReader& in);
   bool one_material() const;
   /// Threads worth waking: no more than there are chunks.
   int team() const;
@@ -182,6 +240,8 @@ class Engine {
   std::uint64_t rebuilds_ = 0, sorted_at_ = 0, touching_ = 0;
   bool count_changed_ = true;
   double largest_overlap_ = 0;
+  std::unique_ptr<Rest> rest_;  // null: off
+  double time_ = 0;             // s, of the last contacts
   int threads_ = 1;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "step/engine_detail.hpp"
+#include "step/rest.hpp"
 
 namespace calx {
 namespace {
@@ -87,27 +87,36 @@ Vec3 torque_of(const Wrench& w) { return {w.tx, w.ty, w.tz}; }
 
 void Engine::sum_pass(std::size_t c) {
   const Chunk& chunk = pairs_.chunks[c];
-  for (const auto& in : chunk.incoming)
-    for (std::size_t slot = in.first; slot < in.last; ++slot) {
-      if (!pairs_.slot_used[slot]) continue;
-      Wrench& a = sphere_wrench_[pairs_.slot_sphere[slot]];
-      if (options.mixed) {
-        kernels_->widen(&lean_slot_[slot], 1, &a);
-        continue;
-      }
-      const Wrench& b = pairs_.slot_wrench[slot];
-      a.fx += b.fx;
-      a.fy += b.fy;
-      a.fz += b.fz;
-      a.tx += b.tx;
-      a.ty += b.ty;
-      a.tz += b.tz;
+  const auto take = [this](std::size_t slot) {
+    if (!pairs_.slot_used[slot]) return;
+    Wrench& a = sphere_wrench_[pairs_.slot_sphere[slot]];
+    if (options.mixed) {
+      kernels_->widen(&lean_slot_[slot], 1, &a);
+      return;
     }
+    const Wrench& b = pairs_.slot_wrench[slot];
+    a.fx += b.fx;
+    a.fy += b.fy;
+    a.fz += b.fz;
+    a.tx += b.tx;
+    a.ty += b.ty;
+    a.tz += b.tz;
+  };
+  if (const RestWalk* w = walk(c))
+    for (const std::size_t slot : w->in_slots) take(slot);
+  else
+    for (const auto& in : chunk.incoming)
+      for (std::size_t slot = in.first; slot < in.last; ++slot) take(slot);
   if (options.mixed)
-    kernels_->widen(lean_wrench_.data() + chunk.first_sphere, chunk.last_sphere - chunk.first_sphere,
-                    sphere_wrench_.data() + chunk.first_sphere);
-  if (!particles.has_clumps) return;
-  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    each_live(c, [this](std::uint32_t first, std::uint32_t last) {
+      const std::uint32_t from = first_sphere_of(first);
+      kernels_->widen(lean_wrench_.data() + from, first_sphere_of(last) - from, sphere_wrench_.data() + from);
+    });
+  if (particles.has_clumps) each_live(c, [this](std::uint32_t first, std::uint32_t last) { sum_spheres(first, last); });
+}
+
+void Engine::sum_spheres(std::uint32_t first, std::uint32_t last) {
+  for (std::uint32_t p = first; p < last; ++p) {
     Wrench sum;
     const Vec3 centre = position(particles.body[p]);
     for (std::uint32_t k = particles.first_sphere[p]; k < particles.first_sphere[p + 1]; ++k) {
@@ -159,6 +168,7 @@ void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
     sum.tx += add.tx;
     sum.ty += add.ty;
     sum.tz += add.tz;
+    if (rest_ && rest_->asleep[chunk.first_particle + k]) continue;
     // The mean velocity of the kick; the spin's own change is left out, for such forces seldom turn anything.
     const Vec3 v = velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(sum) + options.gravity);
     results_[c].force_work += (dot(force_of(add), v) + dot(torque_of(add), spin(b))) * dt;
@@ -184,25 +194,26 @@ void Engine::book_half(std::size_t c, double dt, bool before) {
 }
 
 void Engine::integrate_euler(std::size_t c, double dt) {
-  const Chunk& chunk = pairs_.chunks[c];
-  const std::size_t first = chunk.first_particle, count = chunk.last_particle - chunk.first_particle;
   const double gravity[3] = {options.gravity.x, options.gravity.y, options.gravity.z};
   if (options.ledger) book_half(c, dt, true);
   const auto move = particles.has_clumps ? kernels_->move_clumps : kernels_->move_spheres;
-  move(particles.body.data() + first, sums().data() + first, count, gravity, dt);
-  if (particles.has_clumps) {
-    const auto energy =
-        turn_particles(*kernels_, particles, sums(), chunk.first_particle, chunk.last_particle, dt, dt, 0);
+  each_awake(c, [&](std::uint32_t first, std::uint32_t last) {
+    move(particles.body.data() + first, sums().data() + first, last - first, gravity, dt);
+    if (!particles.has_clumps) return;
+    const auto energy = turn_particles(*kernels_, particles, sums(), first, last, dt, dt, 0);
     results_[c].kinetic_rotation += 0.5 * (energy.first + energy.second);
-    particles.refresh_members(chunk.first_particle, chunk.last_particle);
-  }
+    particles.refresh_members(first, last);
+  });
   if (options.ledger) book_half(c, dt, false);
 }
 
 void Engine::drift_verlet(std::size_t c, double dt) {
-  const Chunk& chunk = pairs_.chunks[c];
+  each_awake(c, [&](std::uint32_t first, std::uint32_t last) { drift_run(c, first, last, dt); });
+}
+
+void Engine::drift_run(std::size_t c, std::uint32_t first, std::uint32_t last, double dt) {
   const Vec3 g = options.gravity;
-  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+  for (std::uint32_t p = first; p < last; ++p) {
     Record& b = particles.body[p];
     const Wrench& old = particles.wrench[p];
     const Vec3 half = velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(old) + g);
@@ -212,14 +223,17 @@ void Engine::drift_verlet(std::size_t c, double dt) {
     if (!particles.has_clumps) set_spin(b, spin(b) + 0.5 * dt * b.aux * torque_of(old));
   }
   if (!particles.has_clumps) return;
-  turn_particles(*kernels_, particles, particles.wrench, chunk.first_particle, chunk.last_particle, dt, 0.5 * dt, 0);
-  particles.refresh_members(chunk.first_particle, chunk.last_particle);
+  turn_particles(*kernels_, particles, particles.wrench, first, last, dt, 0.5 * dt, 0);
+  particles.refresh_members(first, last);
 }
 
 void Engine::finish_verlet(std::size_t c, double dt) {
-  const Chunk& chunk = pairs_.chunks[c];
+  each_awake(c, [&](std::uint32_t first, std::uint32_t last) { finish_run(c, first, last, dt); });
+}
+
+void Engine::finish_run(std::size_t c, std::uint32_t first, std::uint32_t last, double dt) {
   ChunkResult& result = results_[c];
-  for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+  for (std::uint32_t p = first; p < last; ++p) {
     Record& b = particles.body[p];
     const Wrench& now = sums()[p];
     set_velocity(b, velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(now) + options.gravity));
@@ -237,7 +251,7 @@ void Engine::finish_verlet(std::size_t c, double dt) {
     result.kinetic_rotation += particles.kinetic_energy(p) - translation;
     result.gravity -= b.m * dot(options.gravity, position(b));
   }
-  if (particles.has_clumps) particles.refresh_members(chunk.first_particle, chunk.last_particle);
+  if (particles.has_clumps) particles.refresh_members(first, last);
 }
 
 std::string bad_motion(const Record& b, const Vec3& listed) {
@@ -258,17 +272,21 @@ std::string bad_motion(const Record& b, const Vec3& listed) {
 }
 
 void Engine::guard_pass(std::size_t c, double dt) {
-  const Chunk& chunk = pairs_.chunks[c];
-  Survey seen;
-  kernels_->survey(particles.body.data() + chunk.first_particle, haste_.data() + chunk.first_particle,
-                   chunk.last_particle - chunk.first_particle, particles.has_clumps, seen);
-  used_[c] += dt * std::sqrt(seen.pace2);
+  double pace2 = 0, squares = 0;
   bool inside = true;
-  for (int k = 0; k < 3; ++k)
-    inside &= options.wrap.periodic[static_cast<std::size_t>(k)] ||
-              (seen.lo[k] >= options.domain.lo[k] && seen.hi[k] <= options.domain.hi[k]);
+  each_awake(c, [&](std::uint32_t first, std::uint32_t last) {
+    Survey seen;
+    kernels_->survey(particles.body.data() + first, haste_.data() + first, last - first, particles.has_clumps, seen);
+    // Written so that a NaN stays.
+    pace2 = seen.pace2 < pace2 ? pace2 : seen.pace2;
+    squares += seen.squares;
+    for (int k = 0; k < 3; ++k)
+      inside &= options.wrap.periodic[static_cast<std::size_t>(k)] ||
+                (seen.lo[k] >= options.domain.lo[k] && seen.hi[k] <= options.domain.hi[k]);
+  });
+  used_[c] += dt * std::sqrt(pace2);
   // Written so that a NaN counts as bad.
-  if (!inside || !(seen.squares < 1e50) || !(used_[c] < 1 - 1e-9)) guard_each(c);
+  if (!inside || !(squares < 1e50) || !(used_[c] < 1 - 1e-9)) guard_each(c);
 }
 
 // What the bounds of guard_pass cannot tell.

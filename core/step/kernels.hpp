@@ -59,6 +59,10 @@ struct PairScan {
   std::size_t width;      // values of an entry
   const void* sums;       // Sum of the precision
   const Wrap* wrap;       // null where nothing is periodic
+  /// Null: every entry from next_entry to last_entry is looked at. Else i, j, chosen (entries relative to first_entry)
+  /// and chosen_ordinal are lists of the entries to look at, next_entry and last_entry count in these lists, and three
+  /// spare numbers follow each of them.
+  const std::uint32_t *chosen, *chosen_ordinal;
   std::size_t first_entry, next_entry, last_entry;
   std::uint32_t last_sphere;  // of the chunk
   std::uint32_t crossed;      // entries before next_entry that leave the chunk

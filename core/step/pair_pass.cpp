@@ -2,7 +2,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "step/engine_detail.hpp"
+#include "step/rest.hpp"
 
 namespace calx {
 
@@ -17,11 +17,18 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
   }();
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
-  std::fill(sphere_wrench_.begin() + chunk.first_sphere, sphere_wrench_.begin() + chunk.last_sphere, Wrench{});
-  if (mixed)
-    std::fill(lean_wrench_.begin() + chunk.first_sphere, lean_wrench_.begin() + chunk.last_sphere, LeanWrench{});
-  std::fill(pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.first_slot),
-            pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.last_slot), std::uint8_t{0});
+  each_live(c, [this](std::uint32_t first, std::uint32_t last) {
+    const std::uint32_t from = first_sphere_of(first), to = first_sphere_of(last);
+    std::fill(sphere_wrench_.begin() + from, sphere_wrench_.begin() + to, Wrench{});
+    if (mixed) std::fill(lean_wrench_.begin() + from, lean_wrench_.begin() + to, LeanWrench{});
+  });
+  const RestWalk* const walk = this->walk(c);
+  const bool chooses = walk && !walk->whole;
+  if (chooses)
+    for (const std::size_t slot : walk->out_slots) pairs_.slot_used[slot] = 0;
+  else
+    std::fill(pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.first_slot),
+              pairs_.slot_used.begin() + static_cast<std::ptrdiff_t>(chunk.last_slot), std::uint8_t{0});
   PairScan& scan = w.scan;
   scan.spheres = mixed ? static_cast<const void*>(lean_.data()) : particles.spheres();
   scan.sums = mixed ? static_cast<const void*>(lean_wrench_.data()) : sphere_wrench_.data();
@@ -35,6 +42,16 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
   scan.last_entry = chunk.last_entry;
   scan.last_sphere = chunk.last_sphere;
   scan.crossed = 0;
+  scan.chosen = scan.chosen_ordinal = nullptr;
+  if (chooses) {
+    result.touching += walk->pair_contacts;
+    scan.i = walk->i.data();
+    scan.j = walk->j.data();
+    scan.chosen = walk->entry.data();
+    scan.chosen_ordinal = walk->ordinal.data();
+    scan.next_entry = 0;
+    scan.last_entry = walk->count;
+  }
   for (bool more = true; more;) {
     more = kernels.find(scan, w.found);
     result.touching += w.found.count;
@@ -74,22 +91,17 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
 }
 
 template <class Precision>
-void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double t,
-                            double dt) {
+bool Engine::law_of_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double largest,
+                          double t, double dt) {
   using Real = typename Precision::Real;
-  constexpr bool mixed = std::is_same_v<Precision, InMixed>;
-  const auto& [kernels, work, spheres, sums, slots] = [&] {
-    if constexpr (mixed)
-      return std::tie(kernels_->in_mixed, w.in_mixed, lean_, lean_wrench_, lean_slot_);
+  const auto& [kernels, work, spheres] = [&] {
+    if constexpr (std::is_same_v<Precision, InMixed>)
+      return std::tie(kernels_->in_mixed, w.in_mixed, lean_);
     else
-      return std::tie(kernels_->in_double, w.in_double, particles.has_clumps ? particles.member : particles.body,
-                      sphere_wrench_, pairs_.slot_wrench);
+      return std::tie(kernels_->in_double, w.in_double, particles.has_clumps ? particles.member : particles.body);
   }();
-  const Chunk& chunk = pairs_.chunks[c];
-  ChunkResult& result = results_[c];
   BlockScratchOf<Real>& block = work.scratch;
-  const std::uint32_t n = pairs.count;
-  block.count = n;
+  block.count = pairs.count;
   const bool spin = list.needs & 7u << CALX_IN_WX, radii = list.needs & 3u << CALX_IN_R_I;
   auto column = [&](int k, bool wanted) { return wanted ? block.in(k) : nullptr; };
   const PairColumns<Real> columns{block.in(CALX_IN_OVERLAP),
@@ -108,24 +120,44 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, co
                                   column(CALX_IN_R_J, radii),
                                   work.arm_i,
                                   work.arm_j};
-  const bool record = kernels.kinematics(spheres.data(), options.wrap.any() ? &options.wrap : nullptr, pairs,
-                                         result.largest_overlap, columns);
+  const bool record =
+      kernels.kinematics(spheres.data(), options.wrap.any() ? &options.wrap : nullptr, pairs, largest, columns);
+  kernels.read_history(pairs_.history.data() + pairs_.chunks[c].first_entry * history_.columns, history_.columns, pairs,
+                       list.state_count, block.state(0));
+  evaluate_block(list, block, dt, t, options.ledger);
+  return record;
+}
+
+template <class Precision>
+void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double t,
+                            double dt) {
+  constexpr bool mixed = std::is_same_v<Precision, InMixed>;
+  const auto& [kernels, work, sums, slots] = [&] {
+    if constexpr (mixed)
+      return std::tie(kernels_->in_mixed, w.in_mixed, lean_wrench_, lean_slot_);
+    else
+      return std::tie(kernels_->in_double, w.in_double, sphere_wrench_, pairs_.slot_wrench);
+  }();
+  const Chunk& chunk = pairs_.chunks[c];
+  ChunkResult& result = results_[c];
+  auto& block = work.scratch;
+  const std::uint32_t n = pairs.count;
+  const bool record = law_of_pairs<Precision>(c, w, pairs, list, result.largest_overlap, t, dt);
   for (std::uint32_t k = 0; record && k < n; ++k) {
-    const double share = 0.5 * columns.overlap[k] / columns.r_eff[k];
+    const double share = 0.5 * block.in(CALX_IN_OVERLAP)[k] / block.in(CALX_IN_R_EFF)[k];
     if (share <= result.largest_overlap) continue;
     result.largest_overlap = share;
     result.overlap_i = pairs.i[k];
     result.overlap_j = pairs.j[k];
   }
 
-  double* history = pairs_.history.data() + chunk.first_entry * history_.columns;
-  kernels.read_history(history, history_.columns, pairs, list.state_count, block.state(0));
-  evaluate_block(list, block, dt, t, options.ledger);
-  kernels.write_history(history, history_.columns, pairs, list.state_count, block.state(0));
-  kernels.scatter(pairs, {columns.nx, columns.ny, columns.nz, block.out(CALX_OUT_FX), block.out(CALX_OUT_FY),
-                          block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
-                          block.out(CALX_OUT_MZ), work.arm_i, work.arm_j, sums.data(), chunk.last_sphere,
-                          pairs_.cross.data() + pairs_.first_cross[c], slots.data(), pairs_.slot_used.data()});
+  kernels.write_history(pairs_.history.data() + chunk.first_entry * history_.columns, history_.columns, pairs,
+                        list.state_count, block.state(0));
+  kernels.scatter(pairs,
+                  {block.in(CALX_IN_NX), block.in(CALX_IN_NY), block.in(CALX_IN_NZ), block.out(CALX_OUT_FX),
+                   block.out(CALX_OUT_FY), block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
+                   block.out(CALX_OUT_MZ), work.arm_i, work.arm_j, sums.data(), chunk.last_sphere,
+                   pairs_.cross.data() + pairs_.first_cross[c], slots.data(), pairs_.slot_used.data()});
   if (!options.ledger) return;
   for (std::uint32_t k = 0; k < n; ++k) {
     result.elastic += block.out(CALX_OUT_ELASTIC)[k];
@@ -137,5 +169,9 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, co
 
 template void Engine::pair_pass<InDouble>(std::size_t, Worker&, double, double);
 template void Engine::pair_pass<InMixed>(std::size_t, Worker&, double, double);
+template bool Engine::law_of_pairs<InDouble>(std::size_t, Worker&, const PairBlock&, const LawList&, double, double,
+                                             double);
+template bool Engine::law_of_pairs<InMixed>(std::size_t, Worker&, const PairBlock&, const LawList&, double, double,
+                                            double);
 
 }  // namespace calx

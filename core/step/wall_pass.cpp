@@ -1,5 +1,5 @@
 // wall_pass.cpp: contacts between spheres and parts, by the same laws.
-#include "step/engine_detail.hpp"
+#include "step/rest.hpp"
 
 namespace calx {
 namespace {
@@ -9,9 +9,18 @@ constexpr double kSameContact = 0.7;
 
 }  // namespace
 
-void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
+void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt, bool capture) {
   ChunkResult& result = results_[c];
-  result.load.assign(parts.size(), Wrench{});
+  const RestWalk* const rest = capture ? &rest_->walks[c] : walk(c);
+  if (!capture) {
+    if (rest) {
+      result.load = rest->load;
+      result.touching += rest->wall_contacts;
+      if (rest->awake.empty() && !rest_->parts_move) return;
+    } else {
+      result.load.assign(parts.size(), Wrench{});
+    }
+  }
   const Record* s = particles.spheres();
   BlockScratch& block = w.in_double.scratch;
   w.wall_count = 0;
@@ -19,6 +28,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
   for (std::size_t row = walls_.first_row[c]; row < walls_.first_row[c + 1]; ++row) {
     const std::uint32_t sphere = walls_.sphere[row], part_number = walls_.part[row];
     const EnginePart& part = parts[part_number];
+    if (rest && capture != (rest_->asleep[particles.owner_of(sphere)] && !rest_->parts[part_number].moving)) continue;
     const Record& a = s[sphere];
     const Vec3 centre = position(a);
     const Vec3 local = part.pose.to_part(centre);
@@ -29,7 +39,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
     const std::size_t slot0 = row * kWallContacts;
     std::uint8_t* touch = walls_.touching.data() + slot0;
     if (count == 0) {
-      for (std::uint32_t k = 0; k < kWallContacts; ++k) touch[k] = 0;
+      for (std::uint32_t k = 0; k < kWallContacts && !capture; ++k) touch[k] = 0;
       continue;
     }
     // Each contact takes the slot whose normal of the last step is nearest; what is left over starts afresh.
@@ -48,9 +58,9 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
       }
       if (slot_of[k] >= 0) taken[slot_of[k]] = true;
     }
-    for (std::uint32_t m = 0; m < kWallContacts; ++m)
+    for (std::uint32_t m = 0; m < kWallContacts && !capture; ++m)
       if (!taken[m]) touch[m] = 0;
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < count && !capture; ++k) {
       if (slot_of[k] < 0)
         for (int m = 0; m < static_cast<int>(kWallContacts); ++m)
           if (!taken[m]) {
@@ -62,8 +72,9 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
     }
     const LawList& list = law(particles.material[particles.owner_of(sphere)], part.material);
     for (std::size_t k = 0; k < count; ++k) {
+      if (slot_of[k] < 0) continue;
       if (w.wall_count > 0 && (w.wall_count == kBlockRows || w.wall_law != &list))
-        evaluate_walls(c, w, *w.wall_law, t, dt);
+        evaluate_walls(c, w, *w.wall_law, t, dt, capture);
       w.wall_law = &list;
       const std::uint32_t n = w.wall_count++;
       const Vec3 normal = rotate(part.pose.turn, found[k].normal);
@@ -93,28 +104,53 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt) {
       block.in(CALX_IN_M_EFF)[n] = a.m;
       block.in(CALX_IN_R_I)[n] = a.r;
       block.in(CALX_IN_R_J)[n] = 0;
-      if (overlap / a.r > result.largest_overlap) {
+      if (!capture && overlap / a.r > result.largest_overlap) {
         result.largest_overlap = overlap / a.r;
         result.overlap_i = sphere;
         result.overlap_j = ~part_number;
       }
     }
   }
-  if (w.wall_count > 0) evaluate_walls(c, w, *w.wall_law, t, dt);
+  if (w.wall_count > 0) evaluate_walls(c, w, *w.wall_law, t, dt, capture);
 }
 
-void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, double t, double dt) {
+/// Adds what row k of the wall block does to its sphere and to its part.
+void Engine::add_wall_contact(Worker& w, std::uint32_t k, Wrench& sphere, Wrench& load) const {
+  BlockScratch& block = w.in_double.scratch;
+  const Vec3 f{block.out(CALX_OUT_FX)[k], block.out(CALX_OUT_FY)[k], block.out(CALX_OUT_FZ)[k]};
+  const Vec3 m{block.out(CALX_OUT_MX)[k], block.out(CALX_OUT_MY)[k], block.out(CALX_OUT_MZ)[k]};
+  const Vec3 on_i = cross(w.wall_arm[k], f) + m, on_part = cross(w.wall_lever[k], f) + m;
+  sphere.fx += f.x;
+  sphere.fy += f.y;
+  sphere.fz += f.z;
+  sphere.tx += on_i.x;
+  sphere.ty += on_i.y;
+  sphere.tz += on_i.z;
+  load.fx -= f.x;
+  load.fy -= f.y;
+  load.fz -= f.z;
+  load.tx -= on_part.x;
+  load.ty -= on_part.y;
+  load.tz -= on_part.z;
+}
+
+void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, double t, double dt, bool capture) {
   ChunkResult& result = results_[c];
   BlockScratch& block = w.in_double.scratch;
   const std::uint32_t n = w.wall_count;
   w.wall_count = 0;
   block.count = n;
-  result.touching += n;
+  if (!capture) result.touching += n;
   for (std::uint32_t h = 0; h < list.state_count; ++h) {
     const double* column = walls_.history.data() + h * walls_.stride;
     double* state = block.state(h);
     for (std::uint32_t k = 0; k < n; ++k)
       state[k] = walls_.touching[w.wall_slot[k]] ? column[w.wall_slot[k]] : list.preset[h];
+  }
+  if (capture) {
+    evaluate_block(list, block, dt, t, options.ledger);
+    rest_take_walls(c, w, n);
+    return;
   }
   for (std::uint32_t k = 0; k < n; ++k) walls_.touching[w.wall_slot[k]] = 1;
   evaluate_block(list, block, dt, t, options.ledger);
@@ -124,23 +160,9 @@ void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, doubl
     for (std::uint32_t k = 0; k < n; ++k) column[w.wall_slot[k]] = state[k];
   }
   for (std::uint32_t k = 0; k < n; ++k) {
+    add_wall_contact(w, k, sphere_wrench_[w.wall_sphere[k]], result.load[w.wall_part[k]]);
     const Vec3 f{block.out(CALX_OUT_FX)[k], block.out(CALX_OUT_FY)[k], block.out(CALX_OUT_FZ)[k]};
     const Vec3 m{block.out(CALX_OUT_MX)[k], block.out(CALX_OUT_MY)[k], block.out(CALX_OUT_MZ)[k]};
-    const Vec3 on_i = cross(w.wall_arm[k], f) + m, on_part = cross(w.wall_lever[k], f) + m;
-    Wrench& a = sphere_wrench_[w.wall_sphere[k]];
-    a.fx += f.x;
-    a.fy += f.y;
-    a.fz += f.z;
-    a.tx += on_i.x;
-    a.ty += on_i.y;
-    a.tz += on_i.z;
-    Wrench& load = result.load[w.wall_part[k]];
-    load.fx -= f.x;
-    load.fy -= f.y;
-    load.fz -= f.z;
-    load.tx -= on_part.x;
-    load.ty -= on_part.y;
-    load.tz -= on_part.z;
     result.wall_work += (dot(f, w.wall_velocity[k]) + dot(m, w.wall_spin[k])) * dt;
   }
   if (!options.ledger) return;

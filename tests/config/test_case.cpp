@@ -50,6 +50,10 @@ TEST_CASE("every key of a case reaches the settings in SI") {
   CHECK(c.output.checkpoint_every == 1);
   CHECK_FALSE(c.output.particles_h5);
   CHECK(c.neighbour.skin == 0.0002);
+  CHECK(c.rest.on);
+  CHECK(c.rest.after == 0.005);
+  CHECK(c.rest.displacement == 1e-4);
+  CHECK(c.rest.force == 0.02);
   CHECK(c.energy_ledger);
   CHECK(c.overlap_limit == 0.3);
   REQUIRE(c.assumptions.size() == 1);

@@ -141,7 +141,7 @@ CALX_INLINE void nearest(const Wrap& wrap, Four& x, Four& y, Four& z) {
 /// Entries between asking for a partner's data and using it.
 constexpr std::size_t kAhead = 64;
 
-template <bool wraps, class Precision>
+template <bool wraps, bool chooses, class Precision>
 CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
   using Sphere = typename Precision::Sphere;
   const Sphere* __restrict s = static_cast<const Sphere*>(scan.spheres);
@@ -175,7 +175,8 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
         if (sizeof(Sphere) > 64) __builtin_prefetch(record + 64);
         __builtin_prefetch(sums + soon, 1);
       }
-      const double* rows = scan.history + (e + kAhead) * scan.width;
+      const std::size_t ahead = chooses ? scan.first_entry + scan.chosen[e + kAhead] : e + kAhead;
+      const double* rows = scan.history + ahead * scan.width;
       for (std::size_t h = 0; h < 4 * scan.width; h += 8) __builtin_prefetch(rows + h, 1);
     }
     Four d0 = load(&s[gi[0]].x), d1 = load(&s[gi[1]].x), d2 = load(&s[gi[2]].x), d3 = load(&s[gi[3]].x);
@@ -194,18 +195,21 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
     if (wraps) nearest(*scan.wrap, d0, d1, d2);
     const unsigned hits = bits_of(d0 * d0 + d1 * d1 + d2 * d2 < d3 * d3) & valid;
     // A contact that ends is forgotten; one that begins is named to the caller.
-    if (left < 4 || !same_flags(scan.touching + e, hits))
+    if (chooses || left < 4 || !same_flags(scan.touching + e, hits))
       for (unsigned q = 0; q < 4 && q < left; ++q) {
         const unsigned hit = hits >> q & 1u;
-        if (hit != scan.touching[e + q]) {
-          scan.touching[e + q] = static_cast<std::uint8_t>(hit);
+        std::uint8_t& flag = scan.touching[chooses ? scan.first_entry + scan.chosen[e + q] : e + q];
+        if (hit != flag) {
+          flag = static_cast<std::uint8_t>(hit);
           if (hit) scan.fresh[started++] = n + ones(hits & ((1u << q) - 1));
         }
       }
     const FourIndex vi = load_index(gi), vj = load_index(gj);
-    const FourIndex row = first_row + static_cast<std::uint32_t>(e - scan.first_entry);
-    const unsigned leaving = sign_bits(vj >= scan.last_sphere) & valid;
+    const FourIndex row =
+        chooses ? load_index(scan.chosen + e) : first_row + static_cast<std::uint32_t>(e - scan.first_entry);
+    const unsigned leaving = chooses ? 0 : sign_bits(vj >= scan.last_sphere) & valid;
     FourIndex number{crossed, crossed, crossed, crossed};
+    if (chooses) number = load_index(scan.chosen_ordinal + e);
     if (leaving) number += FourIndex{0, leaving & 1u, ones(leaving & 3u), ones(leaving & 7u)};
     store_index(block.entry + n, pick(row, hits));
     store_index(block.i + n, pick(vi, hits));
@@ -224,7 +228,9 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
 
 template <class Precision>
 bool find(PairScan& scan, PairBlock& block) {
-  return scan.wrap ? find_in<true, Precision>(scan, block) : find_in<false, Precision>(scan, block);
+  if (scan.chosen)
+    return scan.wrap ? find_in<true, true, Precision>(scan, block) : find_in<false, true, Precision>(scan, block);
+  return scan.wrap ? find_in<true, false, Precision>(scan, block) : find_in<false, false, Precision>(scan, block);
 }
 
 /// Geometry of four pairs, in double whatever the precision: unit vectors towards i, overlaps, distances, radii.
