@@ -33,8 +33,8 @@ void PairList::make_chunks(const Particles& p) {
   run_start_.push_back(static_cast<std::uint32_t>(p.sphere_count()));
 }
 
-void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>& margin, double /*smallest_margin*/,
-                     const HistorySpec& spec, const std::uint32_t* old_rank) {
+void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>& margin, const HistorySpec& spec,
+                     const std::uint32_t* old_rank) {
   const std::size_t n = p.sphere_count();
   make_chunks(p);
   search_.find(p, wrap, margin, run_start_);

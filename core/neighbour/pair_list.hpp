@@ -52,8 +52,8 @@ class PairList {
 
   /// Builds the list for particles as they stand. margin: m, one per particle. old_rank: for each sphere its rank when
   /// the present history was written, or 0xFFFFFFFF for a new sphere; null keeps ranks. Threads: OpenMP.
-  void build(const Particles& particles, const Wrap& wrap, const Column<double>& margin, double smallest_margin,
-             const HistorySpec& spec, const std::uint32_t* old_rank);
+  void build(const Particles& particles, const Wrap& wrap, const Column<double>& margin, const HistorySpec& spec,
+             const std::uint32_t* old_rank);
   std::size_t memory_bytes() const;
 
  private:

@@ -119,7 +119,7 @@ void Engine::load(const StateReader& in) {
     now[k] = position(s[k]);
     if (!fresh) s[k].x = reference_[k].x, s[k].y = reference_[k].y, s[k].z = reference_[k].z;
   }
-  pairs_.build(particles, options.wrap, margin_, smallest_margin_, history_, nullptr);
+  pairs_.build(particles, options.wrap, margin_, history_, nullptr);
   for (std::size_t k = 0; k < spheres; ++k) s[k].x = now[k].x, s[k].y = now[k].y, s[k].z = now[k].z;
   place_parts(0, places_);
   walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);

@@ -185,7 +185,7 @@ void Engine::rebuild(double dt, bool reorder) {
   margin_.resize(particles.count());
   for (std::size_t p = 0; p < particles.count(); ++p)
     margin_[p] = std::clamp(kListSteps * dt * norm(velocity(particles.body[p])), smallest_margin_, largest_margin_);
-  pairs_.build(particles, options.wrap, margin_, smallest_margin_, history_, list_rank_.data());
+  pairs_.build(particles, options.wrap, margin_, history_, list_rank_.data());
   place_parts(dt, places_);
   walls_.build(particles, pairs_, places_, margin_, 1, history_, list_rank_.data());
   const Record* s = particles.spheres();
@@ -338,12 +338,7 @@ GuardReport Engine::finish(double t, double dt) {
     }
     report.outside.insert(report.outside.end(), r.outside.begin(), r.outside.end());
     for (std::size_t k = 0; k < load.size(); ++k) {
-      load[k].fx += r.load[k].fx;
-      load[k].fy += r.load[k].fy;
-      load[k].fz += r.load[k].fz;
-      load[k].tx += r.load[k].tx;
-      load[k].ty += r.load[k].ty;
-      load[k].tz += r.load[k].tz;
+      load[k] += r.load[k];
     }
     if (r.bad && report.message.empty()) {
       const std::uint32_t p = r.bad_particle, sphere = particles.has_clumps ? particles.first_sphere[p] : p;
@@ -411,7 +406,8 @@ std::size_t Engine::memory_bytes() const {
             p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *
            4;
   if (rest_) bytes += rest_->memory_bytes();
-  return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + reference_.capacity() * sizeof(Vec3);
+  return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + haste_.capacity() * 4 +
+         reference_.capacity() * sizeof(Vec3);
 }
 
 }  // namespace calx

@@ -173,6 +173,8 @@ class Engine {
   // rest.cpp, rest_change.cpp
   struct RestWalk;
   const RestWalk* walk(std::size_t chunk) const;
+  template <class Runs, class Visit>
+  void each_run(std::size_t chunk, Runs RestWalk::*runs, const Visit& visit);
   template <class Visit>
   void each_awake(std::size_t chunk, const Visit& visit);
   template <class Visit>

@@ -80,8 +80,6 @@ void move(Record& b, const Vec3& v, double dt) {
   b.y += v.y * dt;
   b.z += v.z * dt;
 }
-Vec3 force_of(const Wrench& w) { return {w.fx, w.fy, w.fz}; }
-Vec3 torque_of(const Wrench& w) { return {w.tx, w.ty, w.tz}; }
 
 }  // namespace
 
@@ -95,12 +93,7 @@ void Engine::sum_pass(std::size_t c) {
       return;
     }
     const Wrench& b = pairs_.slot_wrench[slot];
-    a.fx += b.fx;
-    a.fy += b.fy;
-    a.fz += b.fz;
-    a.tx += b.tx;
-    a.ty += b.ty;
-    a.tz += b.tz;
+    a += b;
   };
   if (const RestWalk* w = walk(c))
     for (const std::size_t slot : w->in_slots) take(slot);
@@ -122,12 +115,7 @@ void Engine::sum_spheres(std::uint32_t first, std::uint32_t last) {
     for (std::uint32_t k = particles.first_sphere[p]; k < particles.first_sphere[p + 1]; ++k) {
       const Wrench& w = sphere_wrench_[k];
       const Vec3 t = cross(position(particles.member[k]) - centre, force_of(w));
-      sum.fx += w.fx;
-      sum.fy += w.fy;
-      sum.fz += w.fz;
-      sum.tx += w.tx + t.x;
-      sum.ty += w.ty + t.y;
-      sum.tz += w.tz + t.z;
+      sum += wrench_of(force_of(w), torque_of(w) + t);
     }
     sum_[p] = sum;
   }
@@ -162,12 +150,7 @@ void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
     const Record& b = particles.body[chunk.first_particle + k];
     Wrench& sum = sums()[chunk.first_particle + k];
     const Wrench add{column[11][k], column[12][k], column[13][k], column[14][k], column[15][k], column[16][k]};
-    sum.fx += add.fx;
-    sum.fy += add.fy;
-    sum.fz += add.fz;
-    sum.tx += add.tx;
-    sum.ty += add.ty;
-    sum.tz += add.tz;
+    sum += add;
     if (rest_ && rest_->asleep[chunk.first_particle + k]) continue;
     // The mean velocity of the kick; the spin's own change is left out, for such forces seldom turn anything.
     const Vec3 v = velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(sum) + options.gravity);

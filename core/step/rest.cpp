@@ -14,8 +14,6 @@ constexpr int kChecks = 4;
 /// A particle falls asleep at this share of the force that wakes it, so that it does not wake at once.
 constexpr double kCalm = 0.5;
 
-Vec3 force_of(const Wrench& w) { return {w.fx, w.fy, w.fz}; }
-Vec3 torque_of(const Wrench& w) { return {w.tx, w.ty, w.tz}; }
 bool same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 bool same(const Quat& a, const Quat& b) { return a.w == b.w && a.x == b.x && a.y == b.y && a.z == b.z; }
 

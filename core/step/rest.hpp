@@ -78,21 +78,23 @@ inline const Engine::RestWalk* Engine::walk(std::size_t c) const {
   return rest_ && rest_->listed ? &rest_->walks[c] : nullptr;
 }
 
-/// Calls visit(first, last) for each run of particles of chunk c that are awake.
-template <class Visit>
-void Engine::each_awake(std::size_t c, const Visit& visit) {
+/// Calls visit(first, last) for each of the runs of particles of chunk c.
+template <class Runs, class Visit>
+void Engine::each_run(std::size_t c, Runs RestWalk::*runs, const Visit& visit) {
   if (const RestWalk* w = walk(c))
-    for (const RestWalk::Run& run : w->awake) visit(run.first, run.last);
+    for (const RestWalk::Run& run : w->*runs) visit(run.first, run.last);
   else
     visit(pairs_.chunks[c].first_particle, pairs_.chunks[c].last_particle);
 }
-/// The same for particles whose sums may change.
+/// Particles that are awake.
+template <class Visit>
+void Engine::each_awake(std::size_t c, const Visit& visit) {
+  each_run(c, &RestWalk::awake, visit);
+}
+/// Particles whose sums may change.
 template <class Visit>
 void Engine::each_live(std::size_t c, const Visit& visit) {
-  if (const RestWalk* w = walk(c))
-    for (const RestWalk::Run& run : w->live) visit(run.first, run.last);
-  else
-    visit(pairs_.chunks[c].first_particle, pairs_.chunks[c].last_particle);
+  each_run(c, &RestWalk::live, visit);
 }
 
 }  // namespace calx

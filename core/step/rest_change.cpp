@@ -29,8 +29,21 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
     for (std::size_t e = pairs_.chunks[c].first_entry; e < pairs_.chunks[c].last_entry; ++e)
       if (pairs_.touching[e]) visit(particles.owner_of(pairs_.i[e]), particles.owner_of(pairs_.j[e]));
   };
-  // Appends what the chunks near some have found, each particle once, and marks it.
-  const auto gather = [&](std::vector<std::uint32_t>& to, std::uint8_t mark) {
+  // Appends the sleepers that touch one that changed, each once and only those not yet marked, and marks them. changed:
+  // near these such contacts may stand.
+  const auto gather = [&](const std::vector<std::uint32_t>& changed, std::vector<std::uint32_t>& to,
+                          std::uint8_t mark) {
+    rest_near(changed);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(team())
+    for (std::size_t c = 0; c < chunks; ++c) {
+      if (!rest.near[c]) continue;
+      auto& found = rest.walks[c].found;
+      found.clear();
+      each_touch(c, [&](std::uint32_t a, std::uint32_t b) {
+        if (rest.mark[a] & Rest::changed && rest.asleep[b]) found.push_back(b);
+        if (rest.mark[b] & Rest::changed && rest.asleep[a]) found.push_back(a);
+      });
+    }
     for (std::size_t c = 0; c < chunks; ++c) {
       if (!rest.near[c]) continue;
       for (const std::uint32_t p : rest.walks[c].found) {
@@ -44,19 +57,8 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
   // Whoever touches one that wakes wakes too.
   for (const std::uint32_t p : wake) rest.mark[p] = Rest::changed;
   if (!wake.empty()) {
-    rest_near(wake);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(team())
-    for (std::size_t c = 0; c < chunks; ++c) {
-      if (!rest.near[c]) continue;
-      auto& found = rest.walks[c].found;
-      found.clear();
-      each_touch(c, [&](std::uint32_t a, std::uint32_t b) {
-        const bool woken_a = rest.mark[a] & Rest::changed, woken_b = rest.mark[b] & Rest::changed;
-        if (woken_a && !woken_b && rest.asleep[b]) found.push_back(b);
-        if (woken_b && !woken_a && rest.asleep[a]) found.push_back(a);
-      });
-    }
-    gather(wake, Rest::changed);
+    const std::vector<std::uint32_t> first = wake;
+    gather(first, wake, Rest::changed);
   }
   for (const std::uint32_t p : wake) {
     rest.asleep[p] = rest.quiet[p] = 0;
@@ -64,7 +66,7 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
     if (options.verlet) {
       Vec3 torque;
       const Vec3 force = rest_unbalanced(p, torque) - particles.body[p].m * options.gravity;
-      particles.wrench[p] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+      particles.wrench[p] = wrench_of(force, torque);
     }
   }
   for (const std::uint32_t p : sleep) {
@@ -94,18 +96,7 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
   };
   for (const std::uint32_t p : sleep) add(p);
   for (const std::uint32_t p : touched) add(p);
-  rest_near(all);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(team())
-  for (std::size_t c = 0; c < chunks; ++c) {
-    if (!rest.near[c]) continue;
-    auto& found = rest.walks[c].found;
-    found.clear();
-    each_touch(c, [&](std::uint32_t a, std::uint32_t b) {
-      if (rest.mark[a] & Rest::changed && rest.asleep[b]) found.push_back(b);
-      if (rest.mark[b] & Rest::changed && rest.asleep[a]) found.push_back(a);
-    });
-  }
-  gather(affected, Rest::affected);
+  gather(all, affected, Rest::affected);
   std::vector<std::uint8_t> stale = rest.near;
   if (!rest.listed) stale.assign(chunks, 1);
   if (rest.sleepers > 0) rest_capture(affected, all, dt);
@@ -140,13 +131,7 @@ void Engine::rest_capture(const std::vector<std::uint32_t>& some, const std::vec
   for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
     if (!rest.near[c]) continue;
     for (const RestWalk::Share& share : rest.walks[c].shares) {
-      Wrench& sum = rest.frozen[share.particle];
-      sum.fx += share.wrench.fx;
-      sum.fy += share.wrench.fy;
-      sum.fz += share.wrench.fz;
-      sum.tx += share.wrench.tx;
-      sum.ty += share.wrench.ty;
-      sum.tz += share.wrench.tz;
+      rest.frozen[share.particle] += share.wrench;
       rest.elastic[share.particle] += share.elastic;
     }
   }
@@ -173,7 +158,7 @@ void Engine::rest_take_pairs(std::size_t c, Worker& w, const LawList& list, doub
     const std::uint32_t p = particles.owner_of(sphere);
     if (!(rest_->mark[p] & Rest::affected)) return;
     const Vec3 t = particles.has_clumps ? m + cross(position(s[sphere]) - position(particles.body[p]), f) : m;
-    walk.shares.push_back({p, {f.x, f.y, f.z, t.x, t.y, t.z}, elastic});
+    walk.shares.push_back({p, wrench_of(f, t), elastic});
   };
   for (std::uint32_t k = 0; k < block.count; ++k) {
     const Vec3 n{out.in(CALX_IN_NX)[k], out.in(CALX_IN_NY)[k], out.in(CALX_IN_NZ)[k]};
@@ -238,16 +223,10 @@ void Engine::rest_take_walls(std::size_t c, Worker& w, std::uint32_t n) {
     add_wall_contact(w, k, on_sphere, walk.load[w.wall_part[k]]);
     const std::uint32_t sphere = w.wall_sphere[k], p = particles.owner_of(sphere);
     if (!(rest_->mark[p] & Rest::affected)) continue;
-    const Vec3 f{on_sphere.fx, on_sphere.fy, on_sphere.fz};
-    Vec3 t{on_sphere.tx, on_sphere.ty, on_sphere.tz};
+    const Vec3 f = force_of(on_sphere);
+    Vec3 t = torque_of(on_sphere);
     if (particles.has_clumps) t += cross(position(particles.member[sphere]) - position(particles.body[p]), f);
-    Wrench& sum = rest_->frozen[p];
-    sum.fx += f.x;
-    sum.fy += f.y;
-    sum.fz += f.z;
-    sum.tx += t.x;
-    sum.ty += t.y;
-    sum.tz += t.z;
+    rest_->frozen[p] += wrench_of(f, t);
   }
 }
 

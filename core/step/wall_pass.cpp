@@ -120,18 +120,8 @@ void Engine::add_wall_contact(Worker& w, std::uint32_t k, Wrench& sphere, Wrench
   const Vec3 f{block.out(CALX_OUT_FX)[k], block.out(CALX_OUT_FY)[k], block.out(CALX_OUT_FZ)[k]};
   const Vec3 m{block.out(CALX_OUT_MX)[k], block.out(CALX_OUT_MY)[k], block.out(CALX_OUT_MZ)[k]};
   const Vec3 on_i = cross(w.wall_arm[k], f) + m, on_part = cross(w.wall_lever[k], f) + m;
-  sphere.fx += f.x;
-  sphere.fy += f.y;
-  sphere.fz += f.z;
-  sphere.tx += on_i.x;
-  sphere.ty += on_i.y;
-  sphere.tz += on_i.z;
-  load.fx -= f.x;
-  load.fy -= f.y;
-  load.fz -= f.z;
-  load.tx -= on_part.x;
-  load.ty -= on_part.y;
-  load.tz -= on_part.z;
+  sphere += wrench_of(f, on_i);
+  load += wrench_of(-f, -on_part);
 }
 
 void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, double t, double dt, bool capture) {

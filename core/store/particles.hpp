@@ -27,7 +27,14 @@ inline Vec3 spin(const Record& b) { return {b.wx, b.wy, b.wz}; }
 /// Force, N, and torque, N m, about the centre of the sphere or particle, world frame.
 struct Wrench {
   double fx = 0, fy = 0, fz = 0, tx = 0, ty = 0, tz = 0;
+  Wrench& operator+=(const Wrench& b) {
+    fx += b.fx, fy += b.fy, fz += b.fz, tx += b.tx, ty += b.ty, tz += b.tz;
+    return *this;
+  }
 };
+inline Vec3 force_of(const Wrench& w) { return {w.fx, w.fy, w.fz}; }
+inline Vec3 torque_of(const Wrench& w) { return {w.tx, w.ty, w.tz}; }
+inline Wrench wrench_of(const Vec3& f, const Vec3& t) { return {f.x, f.y, f.z, t.x, t.y, t.z}; }
 
 /// A shape of scale 1 in its principal frame, centre of mass at the origin.
 struct Shape {

@@ -22,7 +22,7 @@ Pairs entries(const PairList& list) {
 
 PairList listed(const Cloud& c) {
   PairList list;
-  list.build(c.particles, c.wrap, c.margin, c.smallest_margin, {}, nullptr);
+  list.build(c.particles, c.wrap, c.margin, {}, nullptr);
   return list;
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
       return odd_of[2 * p.material[p.owner_of(i)] + p.material[p.owner_of(j)]][static_cast<std::size_t>(k)] != 0;
     };
     PairList list;
-    list.build(p, c.wrap, c.margin, c.smallest_margin, spec, nullptr);
+    list.build(p, c.wrap, c.margin, spec, nullptr);
     // History named by the ids of the spheres; every third entry does not touch.
     auto value = [](std::uint32_t a, std::uint32_t b, int k) { return 1e4 * (k + 1) + a + 1e-4 * b; };
     for (std::size_t e = 0; e < list.entry_count(); ++e) {
@@ -228,7 +228,7 @@ TEST_CASE("history stays with its pair over reordering, removal, insertion and a
       for (std::uint32_t s = p.first_sphere[k]; s < p.first_sphere[k + 1]; ++s) ranks.push_back(kept[s]);
     p.permute(order);
     c.margin.assign(p.count(), 2 * c.smallest_margin);
-    list.build(p, c.wrap, c.margin, c.smallest_margin, spec, ranks.data());
+    list.build(p, c.wrap, c.margin, spec, ranks.data());
 
     std::size_t carried = 0, turned = 0, fresh = 0;
     for (std::size_t e = 0; e < list.entry_count(); ++e) {

@@ -41,7 +41,7 @@ struct Scene {
     build(nullptr, 1);
   }
   void build(const std::uint32_t* old_rank, double factor) {
-    pairs.build(cloud.particles, cloud.wrap, cloud.margin, cloud.smallest_margin, spec, old_rank);
+    pairs.build(cloud.particles, cloud.wrap, cloud.margin, spec, old_rank);
     walls.build(cloud.particles, pairs, places, cloud.margin, factor, spec, old_rank);
   }
   /// Distance of a sphere centre from a place.

@@ -23,6 +23,11 @@ CaseText with_source(const std::string& source) {
   return c;
 }
 
+/// Balls as a CSV file gives them.
+CaseText with_balls_of(const std::string& path) {
+  return with_source(R"({"name": "f", "shape": "ball", "material": "sand", "file": ")" + path + "\"}");
+}
+
 /// Largest overlap of two spheres of different particles over the smaller radius; periodic: of the box.
 double worst_overlap(const Simulation& sim, const Wrap& wrap = {}) {
   const Particles& p = sim.world().particles();
@@ -245,10 +250,7 @@ TEST_CASE("an event starts a source") {
 
 TEST_CASE("particles come from a file, with velocities, spins and scales") {
   const TemporaryFile csv("# bed\nx_m,y_m,z_m,vx_m_s,wz_rad_s,scale\n0,0,0,1,5,1\r\n0.01,0.002,-0.003,-1,0,0.5\n");
-  Simulation sim(
-      with_source("{\"name\": \"f\", \"shape\": \"ball\", \"material\": \"sand\", \"file\": \"" + csv.path + "\"}")
-          .file(),
-      test_options());
+  Simulation sim(with_balls_of(csv.path).file(), test_options());
   CHECK(sim.step_limits().size() > 0);
   sim.step();
   const Particles& p = sim.world().particles();
@@ -268,8 +270,7 @@ TEST_CASE("a file of particles with a fault is refused with its line") {
                                           {"x_m,y_m,z_m\n0,0,0x\n", ":2: \"0x\" is not a finite number"},
                                           {"x_m,y_m,z_m,scale\n0,0,0,-1\n", ":2: a scale of -1"}}) {
     const TemporaryFile csv(row.first);
-    const CaseText c =
-        with_source("{\"name\": \"f\", \"shape\": \"ball\", \"material\": \"sand\", \"file\": \"" + csv.path + "\"}");
+    const CaseText c = with_balls_of(csv.path);
     CAPTURE(row.first);
     CHECK_THROWS_WITH_AS(Simulation(c.file(), test_options()), doctest::Contains(row.second.c_str()), Error);
   }
@@ -277,17 +278,13 @@ TEST_CASE("a file of particles with a fault is refused with its line") {
 
 TEST_CASE("large particles of a file are seen to overlap") {
   const TemporaryFile csv("x_m,y_m,z_m,scale\n0,0,0,4\n0.0065,0,0,4\n");
-  Simulation sim(
-      with_source("{\"name\": \"f\", \"shape\": \"ball\", \"material\": \"sand\", \"file\": \"" + csv.path + "\"}")
-          .file(),
-      test_options());
+  Simulation sim(with_balls_of(csv.path).file(), test_options());
   CHECK_THROWS_WITH_AS(sim.step(), doctest::Contains("particles number 0 and 1 overlap"), Error);
 }
 
 TEST_CASE("the smallest particle of a file limits the time step") {
   const TemporaryFile csv("x_m,y_m,z_m,scale\n0,0,0,1\n0.01,0,0,0.1\n");
-  CaseText c =
-      with_source("{\"name\": \"f\", \"shape\": \"ball\", \"material\": \"sand\", \"file\": \"" + csv.path + "\"}");
+  CaseText c = with_balls_of(csv.path);
   c.time = R"({"end": 1})";
   Simulation sim(c.file(), test_options());
   CHECK(sim.step_limits().at(0).where.find("0.0001 m") != std::string::npos);

@@ -47,10 +47,14 @@ CALX_INLINE Four root(Four x) {
 #endif
 }
 
-/// Bit k: lane k of the mask is set.
-CALX_INLINE unsigned bits_of(FourMask mask) {
+/// Bit k: lane k of the mask of four lanes is set.
+template <class Mask>
+CALX_INLINE unsigned bits_of(Mask mask) {
 #if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
+  if constexpr (sizeof(mask) == 32)
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
+  else
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
 #else
   return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
 #endif
@@ -60,15 +64,6 @@ using FourIndex = std::uint32_t __attribute__((vector_size(16)));
 
 CALX_INLINE FourIndex load_index(const std::uint32_t* p) { return read<FourIndex>(p); }
 CALX_INLINE void store_index(std::uint32_t* p, FourIndex v) { __builtin_memcpy(p, &v, sizeof v); }
-
-template <class Mask>
-CALX_INLINE unsigned sign_bits(Mask mask) {
-#if defined(__AVX__)
-  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
-#else
-  return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
-#endif
-}
 
 CALX_INLINE unsigned ones(unsigned nibble) { return static_cast<unsigned>(__builtin_popcount(nibble)); }
 
@@ -207,7 +202,7 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
     const FourIndex vi = load_index(gi), vj = load_index(gj);
     const FourIndex row =
         chooses ? load_index(scan.chosen + e) : first_row + static_cast<std::uint32_t>(e - scan.first_entry);
-    const unsigned leaving = chooses ? 0 : sign_bits(vj >= scan.last_sphere) & valid;
+    const unsigned leaving = chooses ? 0 : bits_of(vj >= scan.last_sphere) & valid;
     FourIndex number{crossed, crossed, crossed, crossed};
     if (chooses) number = load_index(scan.chosen_ordinal + e);
     if (leaving) number += FourIndex{0, leaving & 1u, ones(leaving & 3u), ones(leaving & 7u)};
