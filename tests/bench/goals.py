@@ -15,7 +15,7 @@ PHASES = {"share_neighbour": "lists", "share_contacts": "contacts and sums", "sh
 
 def profile(rows):
     """Where the time of runs goes, and what the force loop has to do; rows: their JSON lines."""
-    rows = [{**row.get("calx", {}), **row} for row in rows]
+    rows = [row if "share_neighbour" in row else row["calx"] for row in rows]
     middle = {key: statistics.median(row[key] for row in rows)
               for key in (*PHASES, "rebuilds", "entries_per_particle", "pairs_per_particle", "walls_per_particle")}
     phases = ", ".join(f"{100 * middle[key]:.0f} % {name}" for key, name in PHASES.items())
