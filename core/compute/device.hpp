@@ -22,11 +22,15 @@ namespace device_part {
 struct Memory {
   virtual ~Memory() = default;
 };
+struct Parameter {
+  std::uint32_t bytes = 0;  // 0: not known
+  enum { value, buffer, unknown } kind = unknown;
+};
 struct Kernel {
   virtual ~Kernel() = default;
   std::string name;
-  std::string module;                     // label of its module
-  std::vector<std::uint32_t> parameters;  // bytes of each; empty where the backend cannot tell
+  std::string module;                 // label of its module
+  std::vector<Parameter> parameters;  // empty where the backend cannot tell
 };
 struct Module {
   virtual ~Module() = default;
@@ -125,20 +129,21 @@ class DeviceEvent {
   std::unique_ptr<device_part::Pending> pending_;
 };
 
-/// Arguments of one launch, copied: buffers, numbers of 4 or 8 bytes, structs of such numbers.
+/// Arguments of one launch, copied: buffers (an empty one is a null pointer), numbers of 4 or 8 bytes, structs of such.
 class DeviceArguments {
  public:
   static constexpr std::size_t kMost = 64, kValueBytes = 1024;
   struct Item {
-    const device_part::Memory* memory;  // null for a value
-    std::uint32_t offset, bytes;        // of the value
+    const device_part::Memory* memory;  // of a buffer; null for an empty one
+    std::uint32_t offset, bytes;        // of a value
+    bool is_buffer;
   };
 
   std::size_t size() const { return count_; }
   const Item& operator[](std::size_t k) const { return items_[k]; }
   const void* value(std::size_t k) const { return values_ + items_[k].offset; }
 
-  void add(const DeviceBuffer& buffer) { items_[count_++] = {buffer.memory(), 0, sizeof(void*)}; }
+  void add(const DeviceBuffer& buffer) { items_[count_++] = {buffer.memory(), 0, sizeof(void*), true}; }
   template <class T>
   void add(const T& value) {
     static_assert(std::is_trivially_copyable<T>::value && !std::is_pointer<T>::value,
@@ -146,7 +151,7 @@ class DeviceArguments {
     static_assert(sizeof(T) % 4 == 0, "pass 4- and 8-byte numbers or structs of them; bool and char differ per device");
     used_ = (used_ + 7u) & ~7u;
     __builtin_memcpy(values_ + used_, &value, sizeof value);
-    items_[count_++] = {nullptr, used_, sizeof value};
+    items_[count_++] = {nullptr, used_, sizeof value, false};
     used_ += sizeof value;
   }
 
