@@ -10,9 +10,8 @@
  * Subset: C99 scalars and structs, for, if, ?:. No recursion, function pointer, libc or writable global, no operator on
  * a struct, no run-time index into a struct (it costs a stack frame). A pointer to global memory is GLOBAL in FN
  * functions, too. Indices are u32; an offset column * stride + item is u64. Names with _f32 or _f64 fit prelude.h's
- * CALX_ID(name). Names that OpenCL C has already are taken: half, kernel, global, local, constant, step, mix, dot, length.
- * CALX_FAST is defined where a module may contract a * b + c; otherwise every backend gives the same
- * bits. */
+ * CALX_ID(name). Names that OpenCL C has already are taken: half, kernel, global, local, constant, step, mix, dot,
+ * length. CALX_FAST is defined where a module may contract a * b + c; otherwise every backend gives the same bits. */
 #ifndef CALX_LANGUAGE_H
 #define CALX_LANGUAGE_H
 
