@@ -9,8 +9,8 @@
 
 namespace calx {
 
-// "ptxas info    : Compiling entry function 'scan' for 'sm_90'", then lines "    0 bytes stack frame, 0 bytes spill
-// stores, 0 bytes spill loads" and "ptxas info    : Used 40 registers, ...".
+// "ptxas info    : Compiling entry function 'scan' for 'sm_90'", then lines "ptxas         .     0 bytes stack
+// frame, 0 bytes spill stores, 0 bytes spill loads" and "ptxas info    : Used 40 registers, ...".
 std::vector<std::pair<std::string, KernelResources>> read_resources(const std::string& log) {
   std::vector<std::pair<std::string, KernelResources>> all;
   std::istringstream lines(log);
@@ -23,8 +23,10 @@ std::vector<std::pair<std::string, KernelResources>> read_resources(const std::s
     if (all.empty()) continue;
     KernelResources& last = all.back().second;
     int stack = 0, stores = 0, loads = 0;
-    if (std::sscanf(line.c_str(), " %d bytes stack frame, %d bytes spill stores, %d bytes spill loads", &stack, &stores,
-                    &loads) == 3) {
+    const std::size_t frame = line.find_first_of("0123456789");
+    if (frame != std::string::npos &&
+        std::sscanf(line.c_str() + frame, "%d bytes stack frame, %d bytes spill stores, %d bytes spill loads", &stack,
+                    &stores, &loads) == 3) {
       last.stack_bytes = stack;
       last.spill_bytes = stores + loads;
     }
