@@ -72,7 +72,7 @@ CALX_FN void CALX_ID(calx_slide)(const CALX_ID(calx_contact) * c, const real vn,
   s->friction = work - (s->elastic - R(0.5) * kt_before * length2);
   /* The dashpot works on the mean velocity of the step. The force of this contact changes that by 7/2 F dt / m* (solid
    * spheres: 1/m* + r^2/I), half of it on the mean. */
-  const real half = R(1.75) * c->dt / c->m_eff;
-  s->damping = -c->dt * ((s->fx + gx) * (vx + half * s->fx) + (s->fy + gy) * (vy + half * s->fy) +
-                         (s->fz + gz) * (vz + half * s->fz));
+  const real half_step = R(1.75) * c->dt / c->m_eff;
+  s->damping = -c->dt * ((s->fx + gx) * (vx + half_step * s->fx) + (s->fy + gy) * (vy + half_step * s->fy) +
+                         (s->fz + gz) * (vz + half_step * s->fz));
 }
