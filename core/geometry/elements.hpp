@@ -1,5 +1,5 @@
 // elements.hpp: what closest() reads, precomputed and contiguous: triangles with their edges and vertices, and profile
-// segments of surfaces of revolution. Private to core/geometry.
+// segments of surfaces of revolution. For core/geometry, and for step/, which brings the tables to devices.
 //
 // An edge or vertex keeps one direction for each element that meets there, so that "local minimum over all elements
 // sharing it" is decided from the feature alone, whichever of these elements are candidates.

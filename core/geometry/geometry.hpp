@@ -35,6 +35,10 @@ struct MeshFaults {
   std::string describe() const;  // "3 open edges (first at (0.1, 0, 0.2) m), ..."; empty when none
 };
 
+namespace geometry {
+struct Elements;
+}
+
 /// Triangles for pictures and VTK; surfaces of revolution are cut within the chord given.
 struct Tessellation {
   std::vector<Vec3> vertices;
@@ -73,6 +77,8 @@ class Surface {
                       SurfacePoint* out, std::size_t max_count) const;
 
   Tessellation tessellate(double chord) const;
+  /// What closest() reads, for those who bring it to a device; see elements.hpp.
+  const geometry::Elements& elements() const;
 
  private:
   struct Impl;

@@ -88,6 +88,7 @@ void Surface::finish() {
   s.raw_profiles = {};
 }
 
+const geometry::Elements& Surface::elements() const { return impl_->elements; }
 Box Surface::bounds() const { return impl_->bounds; }
 std::size_t Surface::element_count() const { return impl_->elements.count(); }
 MeshFaults Surface::faults() const { return impl_->faults; }

@@ -75,8 +75,7 @@ std::string check_case(const RunOptions& options) {
   line("Memory: " + (megabytes < 1 ? "below 1" : "about " + brief_quantity(megabytes, "1")) + " MB");
   line("Cost: " + (cost < 1 ? "below 1 s" : "about " + clock_text(cost)) + " on " + cores + " at " +
        format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
-  line(std::string("Device: cpu, ") + (options.simulation.mixed ? "mixed" : "double") + " precision, " + cores +
-       "; every plugin runs there");
+  line("Device: " + sim.device() + "; " + (options.simulation.mixed ? "mixed" : "double") + " precision, " + cores);
   line("Materials (SI units):");
   for (const auto& m : c.materials) {
     std::string text;

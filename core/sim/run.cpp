@@ -155,7 +155,7 @@ class Run {
     const double end = o_.until >= 0 ? std::min(o_.until, sim_.settings().time.end) : sim_.settings().time.end;
     while (!sim_.finished() && sim_.time() < end - 0.5 * dt) {
       sim_.step();
-      particle_steps_ += static_cast<double>(sim_.world().particles().count());
+      particle_steps_ += static_cast<double>(sim_.particle_count());
       const double t = sim_.time();
       for (auto& m : sim_.take_messages()) say(m);
       record(t, dt);
@@ -249,7 +249,7 @@ class Run {
     p.time = sim_.time();
     p.end = end;
     p.share = (p.time - first_time_) / std::max(end - first_time_, 1e-300);
-    p.particles = sim_.world().particles().count();
+    p.particles = sim_.particle_count();
     p.particle_steps_per_second = particle_steps_ / std::max(now - start_, 1e-9);
     p.seconds_left = p.share > 0 ? (now - start_) * (1 - p.share) / p.share : 0;
     char text[200];
@@ -264,7 +264,7 @@ class Run {
   std::string closing_line() const {
     return facts_.status + (facts_.reason.empty() ? "" : " (" + facts_.reason + ")") +
            ": t = " + brief_quantity(sim_.time(), "s") + ", " + std::to_string(sim_.step_count()) + " steps, " +
-           std::to_string(sim_.world().particles().count()) + " particles, " +
+           std::to_string(sim_.particle_count()) + " particles, " +
            brief_quantity(facts_.wall_seconds, "s") + " of wall time, " + brief_quantity(facts_.rate * 1e-6, "1") +
            " M particle-steps/s";
   }

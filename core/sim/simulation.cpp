@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/units.hpp"
+#include "sim/device_choice.hpp"
 #include "sim/time_step.hpp"
 #include "sim/world.hpp"
 
@@ -170,6 +171,10 @@ void build_engine(World& w, const SimulationOptions& options) {
                                        "\" has no single-precision block function, which \"--precision mixed\" needs; "
                                        "run it with \"--precision double\"");
   e.prepare(options.threads > 0 ? options.threads : omp_get_max_threads());
+  DeviceChoice choice = choose_device(options.device, e.device_obstacles());
+  w.device = choice.text;
+  if (choice.differs) w.say("--device " + options.device + ": runs on the " + choice.text);
+  if (choice.device) e.use_device(std::move(choice.device));
 }
 
 void build_sensors(World& w) {
@@ -222,6 +227,8 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options)
 Simulation::~Simulation() = default;
 
 const CaseSettings& Simulation::settings() const { return impl_->w.c; }
+const std::string& Simulation::device() const { return impl_->w.device; }
+std::size_t Simulation::particle_count() const { return impl_->w.engine.particles.count(); }
 const WorldView& Simulation::world() const { return impl_->w; }
 double Simulation::time() const { return impl_->w.now; }
 std::uint64_t Simulation::step_count() const { return impl_->w.steps; }
@@ -350,7 +357,7 @@ void Simulation::load(const StateReader& in) {
 
 std::string Simulation::digest() const {
   const Engine& e = impl_->w.engine;
-  const Particles& p = e.particles;
+  const Particles& p = impl_->w.particles();
   std::vector<std::uint32_t> order(p.count());
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return p.id[a] < p.id[b]; });

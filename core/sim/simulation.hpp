@@ -14,6 +14,7 @@ namespace calx {
 struct SimulationOptions {
   int threads = 0;     // 0: all
   bool mixed = false;  // pair contacts in single precision, from exact positions; all else in double
+  std::string device = "cpu";  // "auto", "cpu", "opencl", "cuda" or "host", the last three also with ":ordinal"
   std::vector<std::string> plugin_path;
 };
 
@@ -32,6 +33,9 @@ class Simulation {
   ~Simulation();
 
   const CaseSettings& settings() const;
+  /// Where steps run, and why there.
+  const std::string& device() const;
+  std::size_t particle_count() const;
   const WorldView& world() const;
   double time() const;
   std::uint64_t step_count() const;

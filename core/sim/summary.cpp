@@ -123,7 +123,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
                      {"case_file", c.file},
                      {"started", facts.started},
                      {"seed", c.seed},
-                     {"device", "cpu"},
+                     {"device", s.device()},
                      {"precision", facts.mixed ? "mixed" : "double"},
                      {"arithmetic", "exact"},
                      {"threads", facts.threads}};

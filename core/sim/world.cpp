@@ -116,19 +116,19 @@ bool World::in_region(const std::string& name, const Vec3& p) const {
 
 double World::mass_in(const std::string& name) const {
   double sum = 0;
-  for (const auto& b : engine.particles.body)
+  for (const auto& b : particles().body)
     if (in_region(name, position(b))) sum += b.m;
   return sum;
 }
 
 std::uint64_t World::count_in(const std::string& name) const {
   std::uint64_t n = 0;
-  for (const auto& b : engine.particles.body) n += in_region(name, position(b));
+  for (const auto& b : particles().body) n += in_region(name, position(b));
   return n;
 }
 
 bool World::settled_in(const std::string& name, double per_particle) const {
-  const Particles& p = engine.particles;
+  const Particles& p = particles();
   double kinetic = 0, allowed = 0;
   std::size_t n = 0;
   for (std::size_t k = 0; k < p.count(); ++k) {
@@ -196,7 +196,7 @@ MassLedger World::mass() const {
   MassLedger l = ledger;
   l.inside_count = engine.particles.count();
   l.inside = 0;
-  for (const auto& b : engine.particles.body) l.inside += b.m;
+  for (const auto& b : particles().body) l.inside += b.m;
   l.requested = l.delivered = 0;
   for (const auto& s : sources) {
     l.requested += s.requested_mass();
@@ -258,6 +258,7 @@ void World::handle_events(double t) {
 void World::insert_due(double t) {
   for (auto& source : sources) {
     if (!source.due(t)) continue;
+    engine.fetch();
     const auto seeds = source.make(t, WorldObstacles(*this, source));
     const Shape& shape = engine.particles.shapes[source.shape_index()];
     for (const auto& seed : seeds) {

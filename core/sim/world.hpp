@@ -37,6 +37,7 @@ struct World final : WorldView, EventView {
   std::vector<std::unique_ptr<Sensor>> sensors;
   Engine engine;
   std::vector<StepLimit> limits;
+  std::string device;  // where steps run, and why there
   std::vector<std::string> messages;
   double dt = 0, now = 0;
   std::uint64_t steps = 0;
@@ -61,7 +62,10 @@ struct World final : WorldView, EventView {
   double time() const override { return now; }
   std::uint64_t step() const override { return steps; }
   double time_step() const override { return dt; }
-  const Particles& particles() const override { return engine.particles; }
+  const Particles& particles() const override {
+    engine.fetch();
+    return engine.particles;
+  }
   std::size_t part_count() const override { return walls.size(); }
   const std::string& part_name(std::size_t part) const override { return c.parts[part].name; }
   bool part_present(std::size_t part) const override { return engine.parts[part].present; }

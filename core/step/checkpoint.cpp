@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "step/engine_detail.hpp"
+#include "step/on_device.hpp"
 
 namespace calx {
 
@@ -26,6 +26,7 @@ std::string Engine::history_layout() const {
 }
 
 void Engine::save(StateWriter& out) const {
+  fetch();
   particles.save(out);
   out.put("lists/margin", margin_.data(), margin_.size(), "m");
   out.put("lists/reference", reinterpret_cast<const double*>(reference_.data()), reference_.size() * 3, "m");
@@ -88,6 +89,7 @@ void Engine::load(const StateReader& in) {
         Fault::files,
         "checkpoint: its contact history was written by other laws or in another precision; in the checkpoint:\n" +
             in.get_text("contacts/layout") + "in this case:\n" + history_layout());
+  if (device_) device_->host_changed();
   particles.load(in);
   const auto margins = in.get_doubles("lists/margin"), reference = in.get_doubles("lists/reference"),
              lengths = in.get_doubles("lists/lengths"), sums = in.get_doubles("energy/sums");

@@ -7,6 +7,8 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "compute/law_text.hpp"
+#include "step/on_device.hpp"
 #include "step/rest.hpp"
 
 namespace calx {
@@ -76,6 +78,7 @@ void Engine::inserted() {
 }
 
 void Engine::remove(const std::vector<std::uint8_t>& mark, double dt) {
+  fetch();
   if (rest_) rest_leave(mark, dt);
   Column<std::uint32_t> kept;
   for (std::size_t k = 0; k < particles.sphere_count(); ++k)
@@ -199,6 +202,7 @@ void Engine::rebuild(double dt, bool reorder) {
   ++rebuilds_;
   stale_ = count_changed_ = false;
   if (rest_) rest_relist(dt);
+  if (device_) device_->host_changed();
 }
 
 void Engine::size_sums() {
@@ -228,12 +232,14 @@ void Engine::set_haste() {
 
 void Engine::rebuild_if_stale(double dt) {
   const double start = now_seconds();
+  if (device_ && (stale_ || parts_left_margin())) fetch();
   if (stale_) {
     rebuild(dt, count_changed_ || rebuilds_ - sorted_at_ >= kSortEvery);
   } else if (parts_left_margin()) {
     place_parts(dt, places_);
     walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
     if (rest_) rest_relist(dt);
+    if (device_) device_->host_changed();
   }
   times_.neighbour += now_seconds() - start;
 }
@@ -241,37 +247,31 @@ void Engine::rebuild_if_stale(double dt) {
 void Engine::begin(double dt) {
   if (rest_) rest_watch_parts(dt);
   if (!options.verlet) return;
-  if (stale_) rebuild(dt, count_changed_);
+  if (stale_) {
+    fetch();
+    rebuild(dt, count_changed_);
+  }
   const double start = now_seconds();
-  for (auto& r : results_) r.gravity_work = 0, r.stale = false;
+  for (auto& r : results_) r.gravity_work = {}, r.stale = false;
+  if (device_) {
+    device_->drift(dt);
+  } else {
 #pragma omp parallel for schedule(static) num_threads(team())
-  for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
-    drift_verlet(c, dt);
-    if (options.mixed) thin_pass(c);
-    guard_pass(c, dt);
+    for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
+      drift_verlet(c, dt);
+      if (options.mixed) thin_pass(c);
+      guard_pass(c, dt);
+    }
   }
   for (auto& r : results_) {
     stale_ |= r.stale;
-    energy_.gravity_work += r.gravity_work;
+    energy_.gravity_work += r.gravity_work.closed();
     r.outside.clear();
   }
   times_.integrate += now_seconds() - start;
 }
 
-GuardReport Engine::finish(double t, double dt) {
-  omp_set_num_threads(threads_);
-  time_ = t;
-  if (rest_) rest_watch_parts(dt);
-  rebuild_if_stale(dt);
-  const double start = now_seconds();
-  for (auto& r : results_) {
-    r.elastic = r.friction = r.damping = r.plastic = r.wall_work = r.force_work = 0;
-    r.kinetic_translation = r.kinetic_rotation = r.gravity = r.gravity_work = r.largest_overlap = 0;
-    r.touching = 0;
-    r.stale = r.bad = false;
-    r.outside.clear();
-  }
-  double contacts_done = start;
+void Engine::step_on_host(double t, double dt, double& contacts_done) {
   const std::size_t chunk_count = pairs_.chunks.size();
   std::exception_ptr failure;
 #pragma omp parallel num_threads(team())
@@ -311,6 +311,29 @@ GuardReport Engine::finish(double t, double dt) {
     }
   }
   if (failure) std::rethrow_exception(failure);
+}
+
+GuardReport Engine::finish(double t, double dt) {
+  omp_set_num_threads(threads_);
+  time_ = t;
+  if (rest_) rest_watch_parts(dt);
+  rebuild_if_stale(dt);
+  const double start = now_seconds();
+  for (auto& r : results_) {
+    r.energy = {};
+    r.wall_work = {};
+    r.force_work = 0;
+    r.kinetic_translation = r.kinetic_rotation = r.gravity = r.gravity_work = {};
+    r.largest_overlap = 0;
+    r.touching = 0;
+    r.stale = r.bad = false;
+    r.outside.clear();
+  }
+  double contacts_done = start;
+  if (device_)
+    device_->step(dt);
+  else
+    step_on_host(t, dt, contacts_done);
   times_.contacts += contacts_done - start;
 
   GuardReport report;
@@ -319,17 +342,17 @@ GuardReport Engine::finish(double t, double dt) {
   double worst = 0;
   const ChunkResult* worst_chunk = nullptr;
   std::vector<Wrench> load(parts.size());
-  for (const auto& r : results_) {
-    energy_.kinetic_translation += r.kinetic_translation;
-    energy_.kinetic_rotation += r.kinetic_rotation;
-    energy_.gravity += r.gravity;
-    energy_.elastic += r.elastic;
-    energy_.friction += r.friction;
-    energy_.damping += r.damping;
-    energy_.plastic += r.plastic;
-    energy_.wall_work += r.wall_work;
+  for (auto& r : results_) {
+    energy_.kinetic_translation += r.kinetic_translation.closed();
+    energy_.kinetic_rotation += r.kinetic_rotation.closed();
+    energy_.gravity += r.gravity.closed();
+    energy_.elastic += r.energy.total.elastic;
+    energy_.friction += r.energy.total.friction;
+    energy_.damping += r.energy.total.damping;
+    energy_.plastic += r.energy.total.plastic;
+    energy_.wall_work += r.wall_work.total;
     energy_.force_work += r.force_work;
-    energy_.gravity_work += r.gravity_work;
+    energy_.gravity_work += r.gravity_work.closed();
     touching_ += r.touching;
     stale_ |= r.stale;
     if (r.largest_overlap > worst) {
@@ -372,7 +395,26 @@ GuardReport Engine::finish(double t, double dt) {
   return report;
 }
 
+std::vector<std::string> Engine::device_obstacles() const {
+  std::vector<std::string> reasons;
+  for (const std::string& law : laws_without_text(laws))
+    reasons.push_back("law \"" + law + "\" has no law text, only native code");
+  if (!forces.empty()) reasons.push_back("particle forces (/forces) have native code only");
+  if (options.mixed) reasons.push_back("mixed precision is not there on devices");
+  if (options.rest.on) reasons.push_back("particles at rest (/rest) are not there on devices");
+  return reasons;
+}
+
+void Engine::use_device(std::unique_ptr<Device> device) {
+  device_ = std::make_unique<OnDevice>(std::move(device), *this);
+}
+
+void Engine::fetch() const {
+  if (device_) device_->fetch();
+}
+
 std::vector<Engine::Touch> Engine::touches() const {
+  fetch();
   std::vector<Touch> out;
   const Record* s = particles.spheres();
   for (std::size_t e = 0; e < pairs_.entry_count(); ++e) {
@@ -406,6 +448,7 @@ std::size_t Engine::memory_bytes() const {
             p.owner.capacity() + p.sphere_id.capacity() + list_rank_.capacity()) *
            4;
   if (rest_) bytes += rest_->memory_bytes();
+  if (device_) bytes += device_->memory_bytes();
   return bytes + p.scale.capacity() * 8 + margin_.capacity() * 8 + haste_.capacity() * 4 +
          reference_.capacity() * sizeof(Vec3);
 }

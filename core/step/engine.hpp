@@ -22,6 +22,7 @@
 
 namespace calx {
 
+class Device;
 struct LeanRecord;
 struct LeanWrench;
 struct PairBlock;
@@ -97,6 +98,13 @@ class Engine {
 
   /// Sizes work spaces. Call once materials, laws and parts are known, before the first step.
   void prepare(int threads);
+  /// Why this case cannot step on a device, one reason each; empty: it can. Call after prepare.
+  std::vector<std::string> device_obstacles() const;
+  /// Steps run on the device from now on, with the same bits. Call after prepare, without device_obstacles. Throws Error
+  /// for a law text that the device's compiler refuses.
+  void use_device(std::unique_ptr<Device> device);
+  /// Brings particles and history from the device; call before looking at them. Nothing to do without one.
+  void fetch() const;
   /// First half of a step: verlet moves particles to t + dt; euler does nothing.
   void begin(double dt);
   /// Second half: list check, contacts at time t (parts must hold their poses of t), sums, integration.
@@ -133,10 +141,12 @@ class Engine {
   std::vector<Touch> touches() const;
 
  private:
+  struct OnDevice;
   struct Worker;
   struct ChunkResult;
   struct Rest;
   void rebuild_if_stale(double dt);
+  void step_on_host(double t, double dt, double& contacts_done);
   void rebuild(double dt, bool reorder);
   void wrap_positions();
   void check_periodic_lengths() const;
@@ -145,8 +155,13 @@ class Engine {
   template <class Precision>
   void pair_pass(std::size_t chunk, Worker& worker, double t, double dt);
   template <class Precision>
-  void evaluate_pairs(std::size_t chunk, Worker& worker, const PairBlock& pairs, const LawList& list, double t,
-                      double dt);
+  struct PairWork;
+  /// Law and history of a block. True if some row may have the largest overlap.
+  template <class Precision>
+  bool solve_pairs(std::size_t chunk, Worker& worker, const PairBlock& pairs, const LawList& list, double t, double dt);
+  /// Adds a block to the sums of its spheres and of the chunk. record: some row may have the largest overlap.
+  template <class Precision>
+  void take_pairs(std::size_t chunk, const PairBlock& pairs, PairWork<Precision>& work, bool record);
   /// Geometry and law of a block; nothing is written but the work space. True if some row may have overlap / (2 r_eff)
   /// above largest.
   template <class Precision>
@@ -157,6 +172,7 @@ class Engine {
   /// capture: contacts of sleepers with still parts, read only; else all others.
   void wall_pass(std::size_t chunk, Worker& worker, double t, double dt, bool capture = false);
   void add_wall_contact(Worker& worker, std::uint32_t row, Wrench& sphere, Wrench& load) const;
+  static void close_load_span(ChunkResult& result);
   void evaluate_walls(std::size_t chunk, Worker& worker, const LawList& list, double t, double dt, bool capture);
   void sum_pass(std::size_t chunk);
   void force_pass(std::size_t chunk, Worker& worker, double t, double dt);
@@ -243,6 +259,7 @@ class Engine {
   bool count_changed_ = true;
   double largest_overlap_ = 0;
   std::unique_ptr<Rest> rest_;  // null: off
+  std::unique_ptr<OnDevice> device_;  // null: this processor
   double time_ = 0;             // s, of the last contacts
   int threads_ = 1;
 };

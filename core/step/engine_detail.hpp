@@ -2,6 +2,7 @@
 #pragma once
 #include <chrono>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "step/engine.hpp"
@@ -9,21 +10,85 @@
 
 namespace calx {
 
-/// Rows a block of contacts carries beside what a law sees.
+/// Sums run over spans of so many entries, wall rows or particles of a chunk first, then over the spans of the chunk: an
+/// order that a device of many small workers can follow; see kernels/fold.h.
+constexpr std::uint32_t kPairSpan = 256, kWallSpan = 64, kParticleSpan = 64;
+
+/// What contacts store and lose, J.
+struct EnergySums {
+  double elastic = 0, friction = 0, damping = 0, plastic = 0;
+  EnergySums& operator+=(const EnergySums& b) {
+    elastic += b.elastic, friction += b.friction, damping += b.damping, plastic += b.plastic;
+    return *this;
+  }
+};
+
+/// A sum by spans; members come in the order of their spans.
+template <class Sum>
+struct SpanSum {
+  Sum total{}, part{};
+  std::size_t span = 0;
+  void add(std::size_t its_span, const Sum& value) {
+    if (its_span != span) close();
+    span = its_span;
+    part += value;
+  }
+  void close() {
+    total += part;
+    part = Sum{};
+    span = 0;
+  }
+  /// The sum of all.
+  const Sum& closed() {
+    close();
+    return total;
+  }
+};
+
+/// Of the pair loop: a block and what it carries beside what a law sees.
+template <class Precision>
+struct Engine::PairWork {
+  using Real = typename Precision::Real;
+  explicit PairWork(std::uint32_t state_columns) : scratch(state_columns) {}
+  BlockScratchOf<Real> scratch;
+  alignas(64) Real arm_i[kColumnStride<Real>], arm_j[kColumnStride<Real>];
+  /// Visits the columns that sums are made of, with their namesakes of another work space.
+  template <class Visit>
+  void each_column(PairWork& other, bool energy, const Visit& visit) {
+    for (const int k : {CALX_IN_OVERLAP, CALX_IN_R_EFF, CALX_IN_NX, CALX_IN_NY, CALX_IN_NZ})
+      visit(scratch.in(k), other.scratch.in(k));
+    for (int k = 0; k < (energy ? CALX_OUT_COUNT : 6); ++k) visit(scratch.out(k), other.scratch.out(k));
+    visit(arm_i, other.arm_i);
+    visit(arm_j, other.arm_j);
+  }
+};
+
+/// Work space of a thread.
 struct Engine::Worker {
   explicit Worker(std::uint32_t state_columns)
-      : in_double{BlockScratch(state_columns), {}, {}}, in_mixed{BlockScratchOf<float>(state_columns), {}, {}} {}
-  /// Of the pair loop in one precision.
-  template <class Real>
-  struct PairWork {
-    BlockScratchOf<Real> scratch;
-    alignas(64) Real arm_i[kColumnStride<Real>], arm_j[kColumnStride<Real>];
-  };
-  PairWork<double> in_double;
-  PairWork<float> in_mixed;
+      : in_double(state_columns), in_mixed(state_columns), assembled_double(0), assembled_mixed(0) {}
+  PairWork<InDouble> in_double;
+  PairWork<InMixed> in_mixed;
+  PairWork<InDouble> assembled_double;  // of several law lists
+  PairWork<InMixed> assembled_mixed;
+  template <class Precision>
+  PairWork<Precision>& pair_work() {
+    if constexpr (std::is_same_v<Precision, InMixed>)
+      return in_mixed;
+    else
+      return in_double;
+  }
+  template <class Precision>
+  PairWork<Precision>& assembled() {
+    if constexpr (std::is_same_v<Precision, InMixed>)
+      return assembled_mixed;
+    else
+      return assembled_double;
+  }
   PairScan scan;
   PairBlock found, picked;  // touching pairs, and those of them that one law list takes
   const LawList* list_of_row[kBlockRows];
+  std::uint32_t row_of[kBlockRows];  // of found, for each row of picked
   // Wall block.
   std::uint32_t wall_count = 0;
   const LawList* wall_law = nullptr;
@@ -36,15 +101,18 @@ struct Engine::Worker {
 };
 
 struct alignas(64) Engine::ChunkResult {
-  double elastic = 0, friction = 0, damping = 0, plastic = 0, wall_work = 0, force_work = 0;
-  double kinetic_translation = 0, kinetic_rotation = 0, gravity = 0, gravity_work = 0;
+  SpanSum<EnergySums> energy;  // of contacts
+  SpanSum<double> wall_work;   // J
+  double force_work = 0;       // J
+  SpanSum<double> kinetic_translation, kinetic_rotation, gravity, gravity_work;  // J
   double largest_overlap = 0;
   std::uint32_t overlap_i = 0, overlap_j = 0;  // spheres; j = ~part for a wall
   std::uint64_t touching = 0;
   bool stale = false, bad = false;
   std::uint32_t bad_particle = 0;
   std::vector<std::uint32_t> outside;
-  std::vector<Wrench> load;  // on each part
+  std::vector<Wrench> load, span_load;  // on each part; of the present span of wall rows
+  std::size_t load_span = 0;
 };
 
 /// Which numbers of a particle are not finite or beyond 1e30, and where it is, or where its first sphere was when the

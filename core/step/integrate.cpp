@@ -23,13 +23,17 @@ Vec3 spin_of(const Quat& q, const Vec3& i, const Vec3& l) {
 /// A place, speed or spin beyond this is no number any more, SI units.
 constexpr double kHuge = 1e30;
 
-/// turn_bodies for particles first .. last; wrench: their torques. Returns the sums of the energies of rotation before
-/// and after, J.
-std::pair<double, double> turn_particles(const StepKernels& kernels, Particles& p, const Column<Wrench>& wrench,
-                                         std::uint32_t first, std::uint32_t last, double dt, double kick,
-                                         double late_kick) {
+/// Energies of rotation before and after a turn, J.
+struct TurnSums {
+  double before = 0, after = 0;
+  TurnSums& operator+=(const TurnSums& b) { return before += b.before, after += b.after, *this; }
+};
+
+/// turn_bodies for particles first .. last; wrench: their torques. chunk_first: first particle of the chunk.
+void turn_particles(const StepKernels& kernels, Particles& p, const Column<Wrench>& wrench, std::uint32_t chunk_first,
+                    std::uint32_t first, std::uint32_t last, double dt, double kick, double late_kick,
+                    SpanSum<TurnSums>& energy) {
   TurnTile t;
-  std::pair<double, double> energy{0, 0};
   for (std::uint32_t start = first; start < last; start += kTurnRows) {
     const std::uint32_t n = std::min(kTurnRows, last - start);
     for (std::uint32_t k = 0; k < n; ++k) {
@@ -58,11 +62,9 @@ std::pair<double, double> turn_particles(const StepKernels& kernels, Particles& 
       b.wx = t.wx[k];
       b.wy = t.wy[k];
       b.wz = t.wz[k];
-      energy.first += t.before[k];
-      energy.second += t.after[k];
+      energy.add((start + k - chunk_first) / kParticleSpan, {t.before[k], t.after[k]});
     }
   }
-  return energy;
 }
 
 void set_velocity(Record& b, const Vec3& v) {
@@ -163,30 +165,37 @@ void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
 void Engine::book_half(std::size_t c, double dt, bool before) {
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
-  Vec3 momentum;
+  SpanSum<Vec3> momentum;
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
+    const std::size_t span = (p - chunk.first_particle) / kParticleSpan;
     const Record& b = particles.body[p];
-    result.kinetic_translation += 0.25 * b.m * norm2(velocity(b));
-    if (!particles.has_clumps) result.kinetic_rotation += 0.25 * norm2(spin(b)) / b.aux;
+    result.kinetic_translation.add(span, 0.25 * b.m * norm2(velocity(b)));
+    if (!particles.has_clumps) result.kinetic_rotation.add(span, 0.25 * norm2(spin(b)) / b.aux);
     if (before)
-      result.gravity -= b.m * dot(options.gravity, position(b));
+      result.gravity.add(span, -(b.m * dot(options.gravity, position(b))));
     else
-      momentum += b.m * velocity(b);
+      momentum.add(span, b.m * velocity(b));
   }
-  result.gravity_work += dot(options.gravity, momentum) * dt;
+  // What follows starts with the first span again.
+  result.kinetic_translation.close();
+  result.kinetic_rotation.close();
+  result.gravity.close();
+  result.gravity_work.total += dot(options.gravity, momentum.closed()) * dt;
 }
 
 void Engine::integrate_euler(std::size_t c, double dt) {
   const double gravity[3] = {options.gravity.x, options.gravity.y, options.gravity.z};
   if (options.ledger) book_half(c, dt, true);
+  SpanSum<TurnSums> turning;
   const auto move = particles.has_clumps ? kernels_->move_clumps : kernels_->move_spheres;
   each_awake(c, [&](std::uint32_t first, std::uint32_t last) {
     move(particles.body.data() + first, sums().data() + first, last - first, gravity, dt);
     if (!particles.has_clumps) return;
-    const auto energy = turn_particles(*kernels_, particles, sums(), first, last, dt, dt, 0);
-    results_[c].kinetic_rotation += 0.5 * (energy.first + energy.second);
+    turn_particles(*kernels_, particles, sums(), pairs_.chunks[c].first_particle, first, last, dt, dt, 0, turning);
     particles.refresh_members(first, last);
   });
+  const TurnSums turned = turning.closed();
+  if (options.ledger) results_[c].kinetic_rotation.total += 0.5 * (turned.before + turned.after);
   if (options.ledger) book_half(c, dt, false);
 }
 
@@ -196,17 +205,19 @@ void Engine::drift_verlet(std::size_t c, double dt) {
 
 void Engine::drift_run(std::size_t c, std::uint32_t first, std::uint32_t last, double dt) {
   const Vec3 g = options.gravity;
+  const std::uint32_t chunk_first = pairs_.chunks[c].first_particle;
   for (std::uint32_t p = first; p < last; ++p) {
     Record& b = particles.body[p];
     const Wrench& old = particles.wrench[p];
     const Vec3 half = velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(old) + g);
     move(b, half, dt);
     set_velocity(b, half);
-    results_[c].gravity_work += b.m * dot(g, half) * dt;
+    results_[c].gravity_work.add((p - chunk_first) / kParticleSpan, b.m * dot(g, half) * dt);
     if (!particles.has_clumps) set_spin(b, spin(b) + 0.5 * dt * b.aux * torque_of(old));
   }
   if (!particles.has_clumps) return;
-  turn_particles(*kernels_, particles, particles.wrench, first, last, dt, 0.5 * dt, 0);
+  SpanSum<TurnSums> unused;
+  turn_particles(*kernels_, particles, particles.wrench, chunk_first, first, last, dt, 0.5 * dt, 0, unused);
   particles.refresh_members(first, last);
 }
 
@@ -229,10 +240,11 @@ void Engine::finish_run(std::size_t c, std::uint32_t first, std::uint32_t last, 
       set_spin(b, spin_of(q, i, momentum(q, i, spin(b)) + change));
     }
     if (!options.ledger) continue;
+    const std::size_t span = (p - pairs_.chunks[c].first_particle) / kParticleSpan;
     const double translation = 0.5 * b.m * norm2(velocity(b));
-    result.kinetic_translation += translation;
-    result.kinetic_rotation += particles.kinetic_energy(p) - translation;
-    result.gravity -= b.m * dot(options.gravity, position(b));
+    result.kinetic_translation.add(span, translation);
+    result.kinetic_rotation.add(span, particles.kinetic_energy(p) - translation);
+    result.gravity.add(span, -(b.m * dot(options.gravity, position(b))));
   }
   if (particles.has_clumps) particles.refresh_members(first, last);
 }

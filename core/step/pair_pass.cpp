@@ -67,10 +67,14 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
       std::copy(list.preset.begin(), list.preset.end(), history);
     }
     if (uniform_) {
-      evaluate_pairs<Precision>(c, w, w.found, law(particles.material[0], particles.material[0]), t, dt);
+      const LawList& list = law(particles.material[0], particles.material[0]);
+      const bool record = solve_pairs<Precision>(c, w, w.found, list, t, dt);
+      take_pairs<Precision>(c, w.found, w.pair_work<Precision>(), record);
       continue;
     }
-    // Rows of one law list at a time, in the order of the lists.
+    // Rows of one law list at a time; then all rows together, so that sums have the order of the entries.
+    auto& solved = w.pair_work<Precision>();
+    auto& all = w.assembled<Precision>();
     for (std::uint32_t k = 0; k < w.found.count; ++k) w.list_of_row[k] = &list_of(k);
     for (const LawList* list : laws) {
       PairBlock& picked = w.picked;
@@ -79,14 +83,18 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
         picked.i[n] = w.found.i[k];
         picked.j[n] = w.found.j[k];
         picked.entry[n] = w.found.entry[k];
-        picked.ordinal[n] = w.found.ordinal[k];
+        w.row_of[n] = k;
         n += w.list_of_row[k] == list;
       }
       picked.count = n;
       if (n == 0) continue;
       picked.repeat_last_row();
-      evaluate_pairs<Precision>(c, w, picked, *list, t, dt);
+      solve_pairs<Precision>(c, w, picked, *list, t, dt);
+      solved.each_column(all, options.ledger, [&](const auto* from, auto* to) {
+        for (std::uint32_t k = 0; k < n; ++k) to[w.row_of[k]] = from[k];
+      });
     }
+    take_pairs<Precision>(c, w.found, all, true);
   }
 }
 
@@ -94,12 +102,13 @@ template <class Precision>
 bool Engine::law_of_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double largest,
                           double t, double dt) {
   using Real = typename Precision::Real;
-  const auto& [kernels, work, spheres] = [&] {
+  const auto& [kernels, spheres] = [&] {
     if constexpr (std::is_same_v<Precision, InMixed>)
-      return std::tie(kernels_->in_mixed, w.in_mixed, lean_);
+      return std::tie(kernels_->in_mixed, lean_);
     else
-      return std::tie(kernels_->in_double, w.in_double, particles.has_clumps ? particles.member : particles.body);
+      return std::tie(kernels_->in_double, particles.has_clumps ? particles.member : particles.body);
   }();
+  auto& work = w.pair_work<Precision>();
   BlockScratchOf<Real>& block = work.scratch;
   block.count = pairs.count;
   const bool spin = list.needs & 7u << CALX_IN_WX, radii = list.needs & 3u << CALX_IN_R_I;
@@ -129,20 +138,33 @@ bool Engine::law_of_pairs(std::size_t c, Worker& w, const PairBlock& pairs, cons
 }
 
 template <class Precision>
-void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double t,
-                            double dt) {
-  constexpr bool mixed = std::is_same_v<Precision, InMixed>;
-  const auto& [kernels, work, sums, slots] = [&] {
-    if constexpr (mixed)
-      return std::tie(kernels_->in_mixed, w.in_mixed, lean_wrench_, lean_slot_);
+bool Engine::solve_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const LawList& list, double t, double dt) {
+  const auto& kernels = [this]() -> const PairKernels<Precision>& {
+    if constexpr (std::is_same_v<Precision, InMixed>)
+      return kernels_->in_mixed;
     else
-      return std::tie(kernels_->in_double, w.in_double, sphere_wrench_, pairs_.slot_wrench);
+      return kernels_->in_double;
+  }();
+  // A little less than the largest share: the question there is asked without a division.
+  const double largest = results_[c].largest_overlap * (1 - 1e-6);
+  const bool record = law_of_pairs<Precision>(c, w, pairs, list, largest, t, dt);
+  kernels.write_history(pairs_.history.data() + pairs_.chunks[c].first_entry * history_.columns, history_.columns, pairs,
+                        list.state_count, w.pair_work<Precision>().scratch.state(0));
+  return record;
+}
+
+template <class Precision>
+void Engine::take_pairs(std::size_t c, const PairBlock& pairs, PairWork<Precision>& work, bool record) {
+  const auto& [kernels, sums, slots] = [&] {
+    if constexpr (std::is_same_v<Precision, InMixed>)
+      return std::tie(kernels_->in_mixed, lean_wrench_, lean_slot_);
+    else
+      return std::tie(kernels_->in_double, sphere_wrench_, pairs_.slot_wrench);
   }();
   const Chunk& chunk = pairs_.chunks[c];
   ChunkResult& result = results_[c];
   auto& block = work.scratch;
   const std::uint32_t n = pairs.count;
-  const bool record = law_of_pairs<Precision>(c, w, pairs, list, result.largest_overlap, t, dt);
   for (std::uint32_t k = 0; record && k < n; ++k) {
     const double share = 0.5 * block.in(CALX_IN_OVERLAP)[k] / block.in(CALX_IN_R_EFF)[k];
     if (share <= result.largest_overlap) continue;
@@ -150,9 +172,6 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, co
     result.overlap_i = pairs.i[k];
     result.overlap_j = pairs.j[k];
   }
-
-  kernels.write_history(pairs_.history.data() + chunk.first_entry * history_.columns, history_.columns, pairs,
-                        list.state_count, block.state(0));
   kernels.scatter(pairs,
                   {block.in(CALX_IN_NX), block.in(CALX_IN_NY), block.in(CALX_IN_NZ), block.out(CALX_OUT_FX),
                    block.out(CALX_OUT_FY), block.out(CALX_OUT_FZ), block.out(CALX_OUT_MX), block.out(CALX_OUT_MY),
@@ -160,10 +179,9 @@ void Engine::evaluate_pairs(std::size_t c, Worker& w, const PairBlock& pairs, co
                    pairs_.cross.data() + pairs_.first_cross[c], slots.data(), pairs_.slot_used.data()});
   if (!options.ledger) return;
   for (std::uint32_t k = 0; k < n; ++k) {
-    result.elastic += block.out(CALX_OUT_ELASTIC)[k];
-    result.friction += block.out(CALX_OUT_FRICTION)[k];
-    result.damping += block.out(CALX_OUT_DAMPING)[k];
-    result.plastic += block.out(CALX_OUT_PLASTIC)[k];
+    const EnergySums row{block.out(CALX_OUT_ELASTIC)[k], block.out(CALX_OUT_FRICTION)[k],
+                         block.out(CALX_OUT_DAMPING)[k], block.out(CALX_OUT_PLASTIC)[k]};
+    result.energy.add(pairs.entry[k] / kPairSpan, row);
   }
 }
 

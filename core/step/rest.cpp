@@ -109,11 +109,11 @@ void Engine::rest_check_sleepers(std::size_t c) {
   }
   if (!options.ledger) return;
   ChunkResult& result = results_[c];
-  result.elastic += walk->wall_elastic;
+  result.energy.total.elastic += walk->wall_elastic;
   for (std::uint32_t p = pairs_.chunks[c].first_particle; p < pairs_.chunks[c].last_particle; ++p) {
     if (!rest_->asleep[p]) continue;
-    result.elastic += rest_->elastic[p];
-    if (options.verlet) result.gravity -= particles.body[p].m * dot(options.gravity, position(particles.body[p]));
+    result.energy.total.elastic += rest_->elastic[p];
+    if (options.verlet) result.gravity.total -= particles.body[p].m * dot(options.gravity, position(particles.body[p]));
   }
 }
 

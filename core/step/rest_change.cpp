@@ -144,13 +144,7 @@ template <class Precision>
 void Engine::rest_take_pairs(std::size_t c, Worker& w, const LawList& list, double dt) {
   const PairBlock& block = w.picked;
   law_of_pairs<Precision>(c, w, block, list, 1e300, time_, dt);
-  auto& work = [&]() -> auto& {
-    if constexpr (std::is_same_v<Precision, InMixed>)
-      return w.in_mixed;
-    else
-      return w.in_double;
-  }
-  ();
+  auto& work = w.pair_work<Precision>();
   auto& out = work.scratch;
   const Record* s = particles.spheres();
   RestWalk& walk = rest_->walks[c];

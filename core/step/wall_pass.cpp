@@ -13,6 +13,9 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt, bool captu
   ChunkResult& result = results_[c];
   const RestWalk* const rest = capture ? &rest_->walks[c] : walk(c);
   if (!capture) {
+    result.energy.close();  // of the pairs
+    result.energy.span = result.wall_work.span = result.load_span = 0;
+    result.span_load.assign(parts.size(), Wrench{});
     if (rest) {
       result.load = rest->load;
       result.touching += rest->wall_contacts;
@@ -112,6 +115,15 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt, bool captu
     }
   }
   if (w.wall_count > 0) evaluate_walls(c, w, *w.wall_law, t, dt, capture);
+  if (capture) return;
+  result.energy.close();
+  result.wall_work.close();
+  close_load_span(result);
+}
+
+void Engine::close_load_span(ChunkResult& result) {
+  for (std::size_t k = 0; k < result.load.size(); ++k) result.load[k] += result.span_load[k];
+  result.span_load.assign(result.span_load.size(), Wrench{});
 }
 
 /// Adds what row k of the wall block does to its sphere and to its part.
@@ -150,17 +162,16 @@ void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, doubl
     for (std::uint32_t k = 0; k < n; ++k) column[w.wall_slot[k]] = state[k];
   }
   for (std::uint32_t k = 0; k < n; ++k) {
-    add_wall_contact(w, k, sphere_wrench_[w.wall_sphere[k]], result.load[w.wall_part[k]]);
+    const std::size_t span = (w.wall_slot[k] / kWallContacts - walls_.first_row[c]) / kWallSpan;
+    if (span != result.load_span) close_load_span(result);
+    result.load_span = span;
+    add_wall_contact(w, k, sphere_wrench_[w.wall_sphere[k]], result.span_load[w.wall_part[k]]);
     const Vec3 f{block.out(CALX_OUT_FX)[k], block.out(CALX_OUT_FY)[k], block.out(CALX_OUT_FZ)[k]};
     const Vec3 m{block.out(CALX_OUT_MX)[k], block.out(CALX_OUT_MY)[k], block.out(CALX_OUT_MZ)[k]};
-    result.wall_work += (dot(f, w.wall_velocity[k]) + dot(m, w.wall_spin[k])) * dt;
-  }
-  if (!options.ledger) return;
-  for (std::uint32_t k = 0; k < n; ++k) {
-    result.elastic += block.out(CALX_OUT_ELASTIC)[k];
-    result.friction += block.out(CALX_OUT_FRICTION)[k];
-    result.damping += block.out(CALX_OUT_DAMPING)[k];
-    result.plastic += block.out(CALX_OUT_PLASTIC)[k];
+    result.wall_work.add(span, (dot(f, w.wall_velocity[k]) + dot(m, w.wall_spin[k])) * dt);
+    if (!options.ledger) continue;
+    result.energy.add(span, {block.out(CALX_OUT_ELASTIC)[k], block.out(CALX_OUT_FRICTION)[k],
+                             block.out(CALX_OUT_DAMPING)[k], block.out(CALX_OUT_PLASTIC)[k]});
   }
 }
 

@@ -175,6 +175,7 @@ void time_case(CaseFile file, const std::function<void(const Simulation&, BenchR
   SimulationOptions options;
   options.threads = o.threads;
   options.mixed = o.precision == "mixed";
+  options.device = o.device;
   options.plugin_path = o.plugin_path;
   Simulation sim(std::move(file), options);
   file = {};
@@ -195,7 +196,7 @@ void time_case(CaseFile file, const std::function<void(const Simulation&, BenchR
   const double start = seconds();
   for (; steps < o.steps && !sim.finished(); ++steps) {
     sim.step();
-    particle_steps += static_cast<double>(sim.world().particles().count());
+    particle_steps += static_cast<double>(sim.particle_count());
   }
   const double wall = seconds() - start;
   const auto b = sim.counters();
@@ -208,6 +209,7 @@ void time_case(CaseFile file, const std::function<void(const Simulation&, BenchR
   row.text("calx", version());
   row.text("git", git_revision());
   row.text("precision", o.precision);
+  row.text("device", sim.device());
   row.count("particles", sim.world().particles().count());
   row.count("spheres", sim.world().particles().sphere_count());
   row.count("threads", static_cast<unsigned long long>(o.threads));

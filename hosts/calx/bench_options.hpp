@@ -19,7 +19,7 @@ struct BenchOptions {
   std::string law = "calx.epam";  // clumps
   std::string base = "bumps";     // chute
   std::string case_path;          // fill
-  std::string precision = "double";
+  std::string precision = "double", device = "cpu";
   std::vector<std::string> plugin_path;
   std::vector<std::pair<std::string, std::string>> overrides;  // JSON pointer and value
   bool json = false;

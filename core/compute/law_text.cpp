@@ -1,0 +1,96 @@
+#include "compute/law_text.hpp"
+
+#include <algorithm>
+
+namespace calx {
+namespace {
+
+constexpr const char* kMacros = R"(
+#define CALX_TAKE_PAIR(name, unit, lo, hi, preset, flags, doc) pair.name = numbers[at++];
+#define CALX_TAKE_STATE(name, unit, lo, hi, preset, flags, doc)  \
+  state.name = starts ? numbers[at] : history[(u64)k * stride]; \
+  ++at;                                                         \
+  ++k;
+#define CALX_GIVE_STATE(name, unit, lo, hi, preset, flags, doc) history[(u64)(k++) * stride] = state.name;
+/* One law of a list: numbers from AT on, history from column STATE on. */
+#define CALX_ONE_LAW(law, AT, STATE)                                                             \
+  law##_pair_f64 pair;                                                                           \
+  law##_prop_f64 prop;                                                                           \
+  law##_state_f64 state;                                                                         \
+  u32 at = AT, k = STATE;                                                                        \
+  prop.calx_unused = 0.0;                                                                        \
+  law##_pair_LIST(CALX_TAKE_PAIR) law##_state_LIST(CALX_TAKE_STATE)                              \
+  w.fx = w.fy = w.fz = w.mx = w.my = w.mz = w.elastic = w.friction = w.damping = w.plastic = 0.0; \
+  law##_eval_f64(c, &pair, &prop, &prop, &state, &w);                                            \
+  k = STATE;                                                                                     \
+  law##_state_LIST(CALX_GIVE_STATE)
+
+/* The laws of list number `list` for the contact c, whose fn_before is set here. history: of the contact, columns
+ * `stride` apart; starts: it did not touch at the last step. Returns 0 for a list that the case does not give. */
+FN u32 calx_contact_laws(u32 list, calx_contact_f64* c, GLOBAL double* history, u64 stride, u32 starts,
+                         GLOBAL const double* numbers, calx_wrench_f64* out) {
+  calx_wrench_f64 w;
+)";
+
+constexpr const char* kAdd = R"(      out->fx += w.fx;
+      out->fy += w.fy;
+      out->fz += w.fz;
+      out->mx += w.mx;
+      out->my += w.my;
+      out->mz += w.mz;
+      out->elastic += w.elastic;
+      out->friction += w.friction;
+      out->damping += w.damping;
+      out->plastic += w.plastic;
+)";
+
+std::string number(std::size_t n) { return std::to_string(n) + "u"; }
+
+}  // namespace
+
+LawProgram law_program(const std::vector<const LawList*>& laws) {
+  LawProgram out;
+  out.text = kMacros;
+  std::vector<const LawList*> lists;
+  for (const LawList* list : laws) {
+    if (!list) {
+      out.law_of.push_back(LawProgram::kNoLaw);
+      continue;
+    }
+    const auto found = std::find(lists.begin(), lists.end(), list);
+    out.law_of.push_back(static_cast<std::uint32_t>(found - lists.begin()));
+    if (found != lists.end()) continue;
+    out.text += "  if (list == " + number(lists.size()) + ") {\n";
+    lists.push_back(list);
+    for (std::size_t t = 0; t < list->terms.size(); ++t) {
+      const LawTerm& term = list->terms[t];
+      std::string source(term.table->source, term.table->source_size);
+      if (std::none_of(out.laws.begin(), out.laws.end(), [&](const TextPart& p) { return p.text == source; }))
+        out.laws.push_back({term.id, std::move(source)});
+      const char* before = t == 0 ? "0.0" : "out->fx * c->nx + out->fy * c->ny + out->fz * c->nz";
+      out.text += std::string("    {\n      c->fn_before = ") + before + ";\n      CALX_ONE_LAW(" + term.table->symbol +
+                  ", " + number(out.numbers.size()) + ", " + number(term.state_offset) + ")\n";
+      out.text += t == 0 ? "      *out = w;\n" : kAdd;
+      out.text += "    }\n";
+      out.numbers.insert(out.numbers.end(), term.pair_row.begin(), term.pair_row.end());
+      const auto preset = list->preset.begin() + term.state_offset;
+      out.numbers.insert(out.numbers.end(), preset, preset + term.table->state_count);
+    }
+    out.text += "    return 1;\n  }\n";
+  }
+  out.text += "  return 0;\n}\n";
+  return out;
+}
+
+std::vector<std::string> laws_without_text(const std::vector<const LawList*>& laws) {
+  std::vector<std::string> ids;
+  for (const LawList* list : laws)
+    for (std::size_t t = 0; list && t < list->terms.size(); ++t) {
+      const LawTerm& term = list->terms[t];
+      if (term.table->source && term.table->source_size > 0 && term.table->symbol) continue;
+      if (std::find(ids.begin(), ids.end(), term.id) == ids.end()) ids.push_back(term.id);
+    }
+  return ids;
+}
+
+}  // namespace calx

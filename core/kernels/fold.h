@@ -1,0 +1,200 @@
+/* fold.h: energies, loads on parts, counters and the largest overlap of a step: first of spans of a fixed number of
+ * entries, wall rows or particles of a chunk, then of chunks, always in rank order. The host adds in the same spans. */
+#ifndef CALX_FOLD_H
+#define CALX_FOLD_H
+
+/* A chunk: its particles, entries and wall rows, and where its spans begin in the lists of all spans. */
+typedef struct chunk {
+  u32 first_particle, last_particle, first_entry, last_entry, first_row, last_row;
+  u32 first_pair_span, first_wall_span, first_particle_span;
+} chunk;
+
+#define PAIR_SPAN 256u
+#define WALL_SPAN 64u
+#define PARTICLE_SPAN 64u
+
+/* Sums of a span or chunk. */
+#define SUM_ELASTIC 0u
+#define SUM_FRICTION 1u
+#define SUM_DAMPING 2u
+#define SUM_PLASTIC 3u
+#define SUM_TOUCHING 4u
+#define SUM_LARGEST 5u /* overlap, share of the radius */
+#define SUM_LARGEST_I 6u
+#define SUM_LARGEST_J 7u /* a sphere, or 2^32 - 1 - part */
+#define SUM_WALL_WORK 8u
+#define SUM_TRANSLATION 9u
+#define SUM_ROTATION 10u
+#define SUM_GRAVITY 11u
+#define SUM_GRAVITY_WORK 12u
+#define SUMS 14u /* then six for each part: load, N and N m about the pivot */
+
+/* Number of the chunk that span k belongs to; firsts rise. */
+#define CHUNK_OF_SPAN(member)                     \
+  u32 c = 0, after = n.chunks;                    \
+  while (after - c > 1) {                         \
+    const u32 middle = (c + after) / 2;           \
+    if (chunks[middle].member <= span)            \
+      c = middle;                                 \
+    else                                          \
+      after = middle;                             \
+  }
+
+KERNEL(fold_pairs, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks, GLOBAL const u32* RESTRICT first,
+       GLOBAL const u32* RESTRICT second, GLOBAL const u8* RESTRICT touching, GLOBAL const double* RESTRICT share,
+       GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
+  const u32 span = ITEM;
+  if (span >= spans) return;
+  CHUNK_OF_SPAN(first_pair_span)
+  const u32 from = chunks[c].first_entry + (span - chunks[c].first_pair_span) * PAIR_SPAN;
+  const u32 to = MIN(chunks[c].last_entry, from + PAIR_SPAN);
+  double elastic = 0.0, friction = 0.0, damping = 0.0, plastic = 0.0, largest = 0.0;
+  u32 touches = 0, where = from;
+  const u64 stride = n.entries;
+  for (u32 e = from; e < to; ++e) {
+    if (!touching[e]) continue;
+    ++touches;
+    if (share[e] > largest) {
+      largest = share[e];
+      where = e;
+    }
+    if (!n.ledger) continue;
+    elastic += energy[e];
+    friction += energy[stride + e];
+    damping += energy[2 * stride + e];
+    plastic += energy[3 * stride + e];
+  }
+  GLOBAL double* sums = out + (u64)span * SUMS;
+  sums[SUM_ELASTIC] = elastic;
+  sums[SUM_FRICTION] = friction;
+  sums[SUM_DAMPING] = damping;
+  sums[SUM_PLASTIC] = plastic;
+  sums[SUM_TOUCHING] = (double)touches;
+  sums[SUM_LARGEST] = largest;
+  sums[SUM_LARGEST_I] = largest > 0.0 ? (double)first[where] : 0.0;
+  sums[SUM_LARGEST_J] = largest > 0.0 ? (double)second[where] : 0.0;
+}
+
+KERNEL(fold_walls, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks,
+       GLOBAL const u32* RESTRICT row_sphere, GLOBAL const u32* RESTRICT row_part, GLOBAL const u32* RESTRICT counts,
+       GLOBAL const double* RESTRICT values, GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy,
+       GLOBAL double* RESTRICT out) {
+  const u32 span = ITEM;
+  if (span >= spans) return;
+  CHUNK_OF_SPAN(first_wall_span)
+  const u32 from = chunks[c].first_row + (span - chunks[c].first_wall_span) * WALL_SPAN;
+  const u32 to = MIN(chunks[c].last_row, from + WALL_SPAN);
+  double elastic = 0.0, friction = 0.0, damping = 0.0, plastic = 0.0, work = 0.0, largest = 0.0;
+  u32 touches = 0, where = from;
+  const u64 stride = (u64)n.wall_rows * WALL_CONTACTS;
+  GLOBAL double* sums = out + (u64)span * (SUMS + 6u * n.parts);
+  GLOBAL double* loads = sums + SUMS;
+  for (u32 k = 0; k < 6u * n.parts; ++k) loads[k] = 0.0;
+  for (u32 row = from; row < to; ++row) {
+    GLOBAL double* load = loads + 6u * row_part[row];
+    touches += counts[row];
+    for (u32 k = 0; k < counts[row]; ++k) {
+      const u64 at = (u64)row * WALL_CONTACTS + k;
+      if (share[at] > largest) {
+        largest = share[at];
+        where = row;
+      }
+      load[0] += -values[at];
+      load[1] += -values[stride + at];
+      load[2] += -values[2 * stride + at];
+      load[3] += -values[6 * stride + at];
+      load[4] += -values[7 * stride + at];
+      load[5] += -values[8 * stride + at];
+      work += values[9 * stride + at];
+      if (!n.ledger) continue;
+      elastic += energy[at];
+      friction += energy[stride + at];
+      damping += energy[2 * stride + at];
+      plastic += energy[3 * stride + at];
+    }
+  }
+  sums[SUM_ELASTIC] = elastic;
+  sums[SUM_FRICTION] = friction;
+  sums[SUM_DAMPING] = damping;
+  sums[SUM_PLASTIC] = plastic;
+  sums[SUM_TOUCHING] = (double)touches;
+  sums[SUM_LARGEST] = largest;
+  sums[SUM_LARGEST_I] = largest > 0.0 ? (double)row_sphere[where] : 0.0;
+  sums[SUM_LARGEST_J] = largest > 0.0 ? (double)(0xFFFFFFFFu - row_part[where]) : 0.0;
+  sums[SUM_WALL_WORK] = work;
+}
+
+/* Columns of a span: the energies of its particles. */
+KERNEL(fold_particles, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks,
+       GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
+  const u32 span = ITEM;
+  if (span >= spans) return;
+  CHUNK_OF_SPAN(first_particle_span)
+  const u32 from = chunks[c].first_particle + (span - chunks[c].first_particle_span) * PARTICLE_SPAN;
+  const u32 to = MIN(chunks[c].last_particle, from + PARTICLE_SPAN);
+  for (u32 k = 0; k < PARTICLE_ENERGIES; ++k) {
+    GLOBAL const double* column = energy + (u64)k * n.particles;
+    double sum = 0.0;
+    for (u32 p = from; p < to; ++p) sum += column[p];
+    out[(u64)span * PARTICLE_ENERGIES + k] = sum;
+  }
+}
+
+FN void add_span(GLOBAL double* sums, GLOBAL const double* span) {
+  sums[SUM_ELASTIC] += span[SUM_ELASTIC];
+  sums[SUM_FRICTION] += span[SUM_FRICTION];
+  sums[SUM_DAMPING] += span[SUM_DAMPING];
+  sums[SUM_PLASTIC] += span[SUM_PLASTIC];
+  sums[SUM_TOUCHING] += span[SUM_TOUCHING];
+  if (!(span[SUM_LARGEST] > sums[SUM_LARGEST])) return;
+  sums[SUM_LARGEST] = span[SUM_LARGEST];
+  sums[SUM_LARGEST_I] = span[SUM_LARGEST_I];
+  sums[SUM_LARGEST_J] = span[SUM_LARGEST_J];
+}
+
+/* halves: energies of rotation stand for whole ones before and after the kick, of which half counts. */
+KERNEL(fold_chunks, step_numbers n, u32 halves, u32 pair_spans, u32 wall_spans, u32 particle_spans,
+       GLOBAL const chunk* RESTRICT chunks, GLOBAL const double* RESTRICT pairs, GLOBAL const double* RESTRICT walls,
+       GLOBAL const double* RESTRICT particles, GLOBAL double* RESTRICT out) {
+  const u32 c = ITEM;
+  if (c >= n.chunks) return;
+  const u32 width = SUMS + 6u * n.parts, last = c + 1 == n.chunks;
+  GLOBAL double* sums = out + (u64)c * width;
+  for (u32 k = 0; k < width; ++k) sums[k] = 0.0;
+  const u32 pair_end = last ? pair_spans : chunks[c + 1].first_pair_span;
+  for (u32 s = chunks[c].first_pair_span; s < pair_end; ++s) add_span(sums, pairs + (u64)s * SUMS);
+  const u32 wall_end = last ? wall_spans : chunks[c + 1].first_wall_span;
+  for (u32 s = chunks[c].first_wall_span; s < wall_end; ++s) {
+    GLOBAL const double* span = walls + (u64)s * width;
+    add_span(sums, span);
+    sums[SUM_WALL_WORK] += span[SUM_WALL_WORK];
+    for (u32 k = SUMS; k < width; ++k) sums[k] += span[k];
+  }
+  if (!n.ledger) return;
+  const u32 particle_end = last ? particle_spans : chunks[c + 1].first_particle_span;
+  double px = 0.0, py = 0.0, pz = 0.0, before = 0.0, after = 0.0;
+  for (u32 s = chunks[c].first_particle_span; s < particle_end; ++s) {
+    GLOBAL const double* e = particles + (u64)s * PARTICLE_ENERGIES;
+    sums[SUM_TRANSLATION] += e[0];
+    sums[SUM_GRAVITY] -= e[2];
+    if (halves)
+      before += e[1];
+    else
+      sums[SUM_ROTATION] += e[1];
+  }
+  for (u32 s = chunks[c].first_particle_span; s < particle_end; ++s) {
+    GLOBAL const double* e = particles + (u64)s * PARTICLE_ENERGIES;
+    sums[SUM_TRANSLATION] += e[3];
+    if (halves)
+      after += e[4];
+    else
+      sums[SUM_ROTATION] += e[4];
+    px += e[5];
+    py += e[6];
+    pz += e[7];
+  }
+  if (halves) sums[SUM_ROTATION] += 0.5 * (before + after);
+  sums[SUM_GRAVITY_WORK] += (n.gravity_x * px + n.gravity_y * py + n.gravity_z * pz) * n.dt;
+}
+
+#endif

@@ -1,0 +1,65 @@
+/* world.h: what kernels of a step see of the world. Structures have the layout of their namesakes in core/store,
+ * core/motion and core/geometry; every operation stands in the order that the host's code has, so that both give the
+ * same bits. SI units, world frame unless said. */
+#ifndef CALX_WORLD_H
+#define CALX_WORLD_H
+
+typedef vec3_f64 vec3;
+
+/* A sphere, or a particle (r: bounding radius); see Record. */
+typedef struct record {
+  double x, y, z, r;    /* m */
+  double vx, vy, vz, m; /* m/s; kg */
+  double wx, wy, wz;    /* rad/s */
+  double aux;           /* particle of one sphere: 1 / moment of inertia */
+} record;
+
+typedef struct quat {
+  double w, x, y, z;
+} quat;
+
+/* Numbers of a step. */
+typedef struct step_numbers {
+  double dt;                        /* s */
+  double gravity_x, gravity_y, gravity_z; /* m/s^2 */
+  double low_x, low_y, low_z;       /* m, of the domain */
+  double high_x, high_y, high_z;
+  double length_x, length_y, length_z; /* m, of a period */
+  u32 periodic_x, periodic_y, periodic_z;
+  u32 spheres, particles, entries, wall_rows, chunks, parts;
+  u32 materials, columns; /* columns of history */
+  u32 ledger;             /* energies are kept */
+} step_numbers;
+
+/* Places of the flags that a step raises. */
+#define FLAG_STALE 0u
+#define FLAG_GUARD 1u       /* a number that is not finite, or a particle outside */
+#define FLAG_MISSING_LAW 2u /* 1 + number of the material pair */
+
+#define position_of(b) make3_f64((b)->x, (b)->y, (b)->z)
+#define velocity_of(b) make3_f64((b)->vx, (b)->vy, (b)->vz)
+#define spin_of(b) make3_f64((b)->wx, (b)->wy, (b)->wz)
+
+FN vec3 negative(vec3 a) { return make3_f64(-a.x, -a.y, -a.z); }
+
+FN quat conjugate(quat q) {
+  quat c;
+  c.w = q.w;
+  c.x = -q.x;
+  c.y = -q.y;
+  c.z = -q.z;
+  return c;
+}
+FN vec3 rotate3(quat q, vec3 v) {
+  const vec3 u = make3_f64(q.x, q.y, q.z);
+  const vec3 t = scale3_f64(2.0, cross3_f64(u, v));
+  return add3_f64(add3_f64(v, scale3_f64(q.w, t)), cross3_f64(u, t));
+}
+
+/* Shortest image of a difference along one direction. */
+FN double nearest_image(double d, double period) {
+  d = d > 0.5 * period ? d - period : d;
+  return d < -0.5 * period ? d + period : d;
+}
+
+#endif
