@@ -41,10 +41,11 @@ void build_failed(const ModuleText& text, const std::string& device, const std::
 
 void out_of_memory(const std::string& device, std::uint64_t asked, const DeviceMemory& memory,
                    const std::string& reason) {
-  throw Error(Fault::settings, device + " has no memory left: asked for " + bytes_text(double(asked)) + ", free " +
-                                   (memory.free ? bytes_text(double(memory.free)) : "unknown") + ", in all " +
-                                   (memory.total ? bytes_text(double(memory.total)) : "unknown") + " (" + reason +
-                                   "); use fewer particles, a lower precision or a device with more memory");
+  throw Error(Fault::settings,
+              device + " has no memory left: " + (asked ? "asked for " + bytes_text(double(asked)) + ", " : "") +
+                  "free " + (memory.free ? bytes_text(double(memory.free)) : "unknown") + ", in all " +
+                  (memory.total ? bytes_text(double(memory.total)) : "unknown") + " (" + reason +
+                  "); use fewer particles, a lower precision or a device with more memory");
 }
 
 void launch_failed(const std::string& device, const device_part::Kernel& kernel, std::size_t items,

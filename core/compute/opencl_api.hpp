@@ -29,8 +29,8 @@ constexpr cl_uint CL_PLATFORM_NAME = 0x0902, CL_DEVICE_SINGLE_FP_CONFIG = 0x101B
                   CL_DEVICE_GLOBAL_MEM_SIZE = 0x101F, CL_DEVICE_NAME = 0x102B, CL_DEVICE_VERSION = 0x102F,
                   CL_DRIVER_VERSION = 0x102D, CL_DEVICE_DOUBLE_FP_CONFIG = 0x1032, CL_PROGRAM_BUILD_LOG = 0x1183,
                   CL_KERNEL_NUM_ARGS = 0x1191, CL_KERNEL_ARG_ADDRESS_QUALIFIER = 0x1196,
-                  CL_KERNEL_ARG_ADDRESS_GLOBAL = 0x119B, CL_KERNEL_WORK_GROUP_SIZE = 0x11B0,
-                  CL_EVENT_COMMAND_EXECUTION_STATUS = 0x11D3;
+                  CL_KERNEL_ARG_ADDRESS_GLOBAL = 0x119B, CL_KERNEL_ARG_TYPE_NAME = 0x1198,
+                  CL_KERNEL_WORK_GROUP_SIZE = 0x11B0, CL_EVENT_COMMAND_EXECUTION_STATUS = 0x11D3;
 
 #define CALX_OPENCL_FUNCTIONS(X)                                                                                       \
   X(clGetPlatformIDs, cl_uint, cl_platform_id*, cl_uint*)                                                              \

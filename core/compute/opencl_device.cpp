@@ -73,6 +73,15 @@ struct ClKernel : device_part::Kernel {
   std::size_t most = 1;  // items in a group
 };
 
+/// Drivers differ in whether they check the size of an argument; names of numbers tell it. 0 for a struct.
+std::uint32_t bytes_of(const std::string& type) {
+  for (const char* four : {"u32", "i32", "uint", "int", "float", "unsigned int"})
+    if (type == four) return 4;
+  for (const char* eight : {"u64", "i64", "ulong", "long", "double", "unsigned long"})
+    if (type == eight) return 8;
+  return 0;
+}
+
 struct ClModule : device_part::Module {
   std::shared_ptr<Program> program;
   std::string label;
@@ -101,6 +110,10 @@ struct ClModule : device_part::Module {
                                       nullptr) == 0)
         parameter.kind =
             where == CL_KERNEL_ARG_ADDRESS_GLOBAL ? device_part::Parameter::buffer : device_part::Parameter::value;
+      char type[128] = "";
+      if (core.api.clGetKernelArgInfo(kernel->kernel, k, CL_KERNEL_ARG_TYPE_NAME, sizeof type, type, nullptr) == 0 &&
+          parameter.kind == device_part::Parameter::value)
+        parameter.bytes = bytes_of(type);
       kernel->parameters.push_back(parameter);
     }
     return known = kernel;

@@ -123,6 +123,11 @@ TEST_CASE("kernels get their arguments") {
     if (!device) continue;
     const DeviceModule module = device->build(module_text());
     CHECK(module.build_seconds() > 0);
+    if (kind == "cuda") {
+      CHECK(module.resources("twice").registers > 0);
+      CHECK(module.resources("twice").spill_bytes == 0);
+    }
+    CHECK(module.resources("no_such_kernel").registers == -1);
     const std::uint32_t n = 1000;
     const std::vector<std::uint32_t> in = numbers(n);
     const DeviceBuffer from = device->upload(in), to = device->allocate(4 * n);

@@ -34,7 +34,9 @@
 #endif
 
 #if defined(__OPENCL_C_VERSION__) || defined(__OPENCL_VERSION__)
+#ifndef CALX_FAST /* a host that trades equal bits for speed defines it; other languages have compiler options for this */
 #pragma OPENCL FP_CONTRACT OFF
+#endif
 #define CALX_FN static inline
 #define calx_sqrt(x) sqrt(x)
 #define calx_abs(x) fabs(x)
