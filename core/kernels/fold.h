@@ -1,17 +1,15 @@
-/* fold.h: energies, loads on parts, counters and the largest overlap of a step: first of spans of a fixed number of
- * entries, wall rows or particles of a chunk, then of chunks, always in rank order. The host adds in the same spans. */
+/* fold.h: energies, loads on parts, counters and the largest overlap of a step: first of spans of SPAN spheres or
+ * particles of a chunk, then of chunks, always in rank order. The host adds in the same spans. A contact belongs to its
+ * first sphere, so that no sum depends on what lists hold beside contacts. */
 #ifndef CALX_FOLD_H
 #define CALX_FOLD_H
 
-/* A chunk: its particles, entries and wall rows, and where its spans begin in the lists of all spans. */
+/* A chunk, and where its spans of particles and of spheres begin in the lists of all spans. */
 typedef struct chunk {
-  u32 first_particle, last_particle, first_entry, last_entry, first_row, last_row;
-  u32 first_pair_span, first_wall_span, first_particle_span;
+  u32 first_particle, last_particle, first_sphere, last_sphere, first_particle_span, first_sphere_span;
 } chunk;
 
-#define PAIR_SPAN 256u
-#define WALL_SPAN 64u
-#define PARTICLE_SPAN 64u
+#define SPAN 64u
 
 /* Sums of a span or chunk. */
 #define SUM_ELASTIC 0u
@@ -30,24 +28,24 @@ typedef struct chunk {
 #define SUMS 14u /* then six for each part: load, N and N m about the pivot */
 
 /* Number of the chunk that span k belongs to; firsts rise. */
-#define CHUNK_OF_SPAN(member)                     \
-  u32 c = 0, after = n.chunks;                    \
-  while (after - c > 1) {                         \
-    const u32 middle = (c + after) / 2;           \
-    if (chunks[middle].member <= span)            \
-      c = middle;                                 \
-    else                                          \
-      after = middle;                             \
+#define CHUNK_OF_SPAN(member)           \
+  u32 c = 0, after = n.chunks;          \
+  while (after - c > 1) {               \
+    const u32 middle = (c + after) / 2; \
+    if (chunks[middle].member <= span)  \
+      c = middle;                       \
+    else                                \
+      after = middle;                   \
   }
 
 KERNEL(fold_pairs, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks, GLOBAL const u32* RESTRICT first,
-       GLOBAL const u32* RESTRICT second, GLOBAL const u8* RESTRICT touching, GLOBAL const double* RESTRICT share,
-       GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
+       GLOBAL const u32* RESTRICT second, GLOBAL const u32* RESTRICT row_first, GLOBAL const u8* RESTRICT touching,
+       GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
   const u32 span = ITEM;
   if (span >= spans) return;
-  CHUNK_OF_SPAN(first_pair_span)
-  const u32 from = chunks[c].first_entry + (span - chunks[c].first_pair_span) * PAIR_SPAN;
-  const u32 to = MIN(chunks[c].last_entry, from + PAIR_SPAN);
+  CHUNK_OF_SPAN(first_sphere_span)
+  const u32 sphere = chunks[c].first_sphere + (span - chunks[c].first_sphere_span) * SPAN;
+  const u32 from = row_first[sphere], to = row_first[MIN(chunks[c].last_sphere, sphere + SPAN)];
   double elastic = 0.0, friction = 0.0, damping = 0.0, plastic = 0.0, largest = 0.0;
   u32 touches = 0, where = from;
   const u64 stride = n.entries;
@@ -76,14 +74,14 @@ KERNEL(fold_pairs, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunk
 }
 
 KERNEL(fold_walls, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks,
-       GLOBAL const u32* RESTRICT row_sphere, GLOBAL const u32* RESTRICT row_part, GLOBAL const u32* RESTRICT counts,
-       GLOBAL const double* RESTRICT values, GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy,
-       GLOBAL double* RESTRICT out) {
+       GLOBAL const u32* RESTRICT wall_first, GLOBAL const u32* RESTRICT row_sphere,
+       GLOBAL const u32* RESTRICT row_part, GLOBAL const u32* RESTRICT counts, GLOBAL const double* RESTRICT values,
+       GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
   const u32 span = ITEM;
   if (span >= spans) return;
-  CHUNK_OF_SPAN(first_wall_span)
-  const u32 from = chunks[c].first_row + (span - chunks[c].first_wall_span) * WALL_SPAN;
-  const u32 to = MIN(chunks[c].last_row, from + WALL_SPAN);
+  CHUNK_OF_SPAN(first_sphere_span)
+  const u32 sphere = chunks[c].first_sphere + (span - chunks[c].first_sphere_span) * SPAN;
+  const u32 from = wall_first[sphere], to = wall_first[MIN(chunks[c].last_sphere, sphere + SPAN)];
   double elastic = 0.0, friction = 0.0, damping = 0.0, plastic = 0.0, work = 0.0, largest = 0.0;
   u32 touches = 0, where = from;
   const u64 stride = (u64)n.wall_rows * WALL_CONTACTS;
@@ -130,8 +128,8 @@ KERNEL(fold_particles, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT c
   const u32 span = ITEM;
   if (span >= spans) return;
   CHUNK_OF_SPAN(first_particle_span)
-  const u32 from = chunks[c].first_particle + (span - chunks[c].first_particle_span) * PARTICLE_SPAN;
-  const u32 to = MIN(chunks[c].last_particle, from + PARTICLE_SPAN);
+  const u32 from = chunks[c].first_particle + (span - chunks[c].first_particle_span) * SPAN;
+  const u32 to = MIN(chunks[c].last_particle, from + SPAN);
   for (u32 k = 0; k < PARTICLE_ENERGIES; ++k) {
     GLOBAL const double* column = energy + (u64)k * n.particles;
     double sum = 0.0;
@@ -153,7 +151,7 @@ FN void add_span(GLOBAL double* sums, GLOBAL const double* span) {
 }
 
 /* halves: energies of rotation stand for whole ones before and after the kick, of which half counts. */
-KERNEL(fold_chunks, step_numbers n, u32 halves, u32 pair_spans, u32 wall_spans, u32 particle_spans,
+KERNEL(fold_chunks, step_numbers n, u32 halves, u32 sphere_spans, u32 particle_spans,
        GLOBAL const chunk* RESTRICT chunks, GLOBAL const double* RESTRICT pairs, GLOBAL const double* RESTRICT walls,
        GLOBAL const double* RESTRICT particles, GLOBAL double* RESTRICT out) {
   const u32 c = ITEM;
@@ -161,10 +159,9 @@ KERNEL(fold_chunks, step_numbers n, u32 halves, u32 pair_spans, u32 wall_spans, 
   const u32 width = SUMS + 6u * n.parts, last = c + 1 == n.chunks;
   GLOBAL double* sums = out + (u64)c * width;
   for (u32 k = 0; k < width; ++k) sums[k] = 0.0;
-  const u32 pair_end = last ? pair_spans : chunks[c + 1].first_pair_span;
-  for (u32 s = chunks[c].first_pair_span; s < pair_end; ++s) add_span(sums, pairs + (u64)s * SUMS);
-  const u32 wall_end = last ? wall_spans : chunks[c + 1].first_wall_span;
-  for (u32 s = chunks[c].first_wall_span; s < wall_end; ++s) {
+  const u32 end = last ? sphere_spans : chunks[c + 1].first_sphere_span;
+  for (u32 s = chunks[c].first_sphere_span; s < end; ++s) add_span(sums, pairs + (u64)s * SUMS);
+  for (u32 s = chunks[c].first_sphere_span; s < end; ++s) {
     GLOBAL const double* span = walls + (u64)s * width;
     add_span(sums, span);
     sums[SUM_WALL_WORK] += span[SUM_WALL_WORK];

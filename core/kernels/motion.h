@@ -1,7 +1,8 @@
 /* motion.h: sums of wrenches in the order that all backends share, the two integrators, and guards.
  *
  * The order, for each sphere: entries whose first sphere lies in its own chunk, by rising first sphere; its own row, by
- * rising partner; parts, by row and depth; entries whose first sphere lies in an earlier chunk, by rising first sphere. */
+ * rising partner; parts, by row and depth; entries whose first sphere lies in an earlier chunk, by rising first sphere.
+ */
 #ifndef CALX_MOTION_H
 #define CALX_MOTION_H
 
@@ -246,7 +247,8 @@ KERNEL(move_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record*
 /* Velocity Verlet, first half: kick by the forces of the last step, then drift. energy, column 0: work of gravity. */
 FN void drift(GLOBAL record* b, GLOBAL const wrench* w, GLOBAL double* energy, u32 p, step_numbers n) {
   const double half_step = 0.5 * n.dt, inverse = 1.0 / b->m;
-  const double vx = b->vx + half_step * (inverse * w->fx + n.gravity_x), vy = b->vy + half_step * (inverse * w->fy + n.gravity_y),
+  const double vx = b->vx + half_step * (inverse * w->fx + n.gravity_x),
+               vy = b->vy + half_step * (inverse * w->fy + n.gravity_y),
                vz = b->vz + half_step * (inverse * w->fz + n.gravity_z);
   b->x += vx * n.dt;
   b->y += vy * n.dt;

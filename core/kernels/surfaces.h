@@ -42,10 +42,11 @@ typedef struct shape {
 } shape;
 
 /* Tables of all shapes. */
-#define SHAPE_TABLES                                                                                         \
-  GLOBAL const shape *RESTRICT shapes, GLOBAL const triangle *RESTRICT triangles, GLOBAL const edge *RESTRICT edges,     \
-      GLOBAL const vertex *RESTRICT vertices, GLOBAL const vec3 *RESTRICT inwards, GLOBAL const vec3 *RESTRICT directions, \
-      GLOBAL const axis *RESTRICT axes, GLOBAL const segment *RESTRICT segments, GLOBAL const profile_point *RESTRICT points, \
+#define SHAPE_TABLES                                                                                                 \
+  GLOBAL const shape *RESTRICT shapes, GLOBAL const triangle *RESTRICT triangles, GLOBAL const edge *RESTRICT edges, \
+      GLOBAL const vertex *RESTRICT vertices, GLOBAL const vec3 *RESTRICT inwards,                                   \
+      GLOBAL const vec3 *RESTRICT directions, GLOBAL const axis *RESTRICT axes,                                      \
+      GLOBAL const segment *RESTRICT segments, GLOBAL const profile_point *RESTRICT points,                          \
       GLOBAL const planar *RESTRICT alongs
 
 /* cos 15 degrees. */
@@ -84,8 +85,7 @@ FN void merge_minima(minima* m) {
   u32 kept = 1;
   for (u32 k = 1; k < m->count; ++k) {
     u32 apart = 1;
-    for (u32 j = 0; j < kept && apart; ++j)
-      apart = dot3_f64(m->found[j].normal, m->found[k].normal) < CREASE_COSINE;
+    for (u32 j = 0; j < kept && apart; ++j) apart = dot3_f64(m->found[j].normal, m->found[k].normal) < CREASE_COSINE;
     if (apart) m->found[kept++] = m->found[k];
   }
   m->count = kept;

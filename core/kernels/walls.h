@@ -42,8 +42,8 @@ KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
   for (u32 k = first_element[row]; k < first_element[row + 1]; ++k) {
     const u32 element = elements[k];
     if (element < s->triangle_count) {
-      triangle_minima(triangles + s->triangles + element, edges + s->edges, vertices + s->vertices, inwards + s->inwards,
-                      directions + s->directions, element, at_part, a->r, s->tolerance, &m);
+      triangle_minima(triangles + s->triangles + element, edges + s->edges, vertices + s->vertices,
+                      inwards + s->inwards, directions + s->directions, element, at_part, a->r, s->tolerance, &m);
       continue;
     }
     GLOBAL const segment* piece = segments + s->segments + (element - s->triangle_count);
@@ -115,8 +115,8 @@ KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
     c.r_j = 0.0;
     c.dt = n.dt;
     calx_wrench_f64 w;
-    if (!calx_contact_laws(law_of[pair], &c, history + (slot0 + slot_of[k]), history_stride,
-                           !(old >> slot_of[k] & 1u), law_numbers, &w)) {
+    if (!calx_contact_laws(law_of[pair], &c, history + (slot0 + slot_of[k]), history_stride, !(old >> slot_of[k] & 1u),
+                           law_numbers, &w)) {
       ATOMIC_MAX(flags + FLAG_MISSING_LAW, pair + 1u);
       counts[row] = 0;
       return;

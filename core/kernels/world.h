@@ -20,9 +20,9 @@ typedef struct quat {
 
 /* Numbers of a step. */
 typedef struct step_numbers {
-  double dt;                        /* s */
+  double dt;                              /* s */
   double gravity_x, gravity_y, gravity_z; /* m/s^2 */
-  double low_x, low_y, low_z;       /* m, of the domain */
+  double low_x, low_y, low_z;             /* m, of the domain */
   double high_x, high_y, high_z;
   double length_x, length_y, length_z; /* m, of a period */
   u32 periodic_x, periodic_y, periodic_z;

@@ -15,8 +15,9 @@ struct DeviceChoice {
 };
 
 /// asked: "auto", "cpu", "opencl", "cuda" or "host", the last three with ":ordinal" or without. obstacles: why the case
-/// cannot step on a device; then it runs on this processor whatever was asked. "auto" takes a CUDA device that gives the
-/// bits of the processor. Throws Error(Fault::usage) for another word, and for a device asked for that is not there.
+/// cannot step on a device; then it runs on this processor whatever was asked. "auto" takes a CUDA device that gives
+/// the bits of the processor. Throws Error(Fault::usage) for another word, and for a device asked for that is not
+/// there.
 DeviceChoice choose_device(const std::string& asked, const std::vector<std::string>& obstacles);
 
 }  // namespace calx

@@ -264,9 +264,8 @@ class Run {
   std::string closing_line() const {
     return facts_.status + (facts_.reason.empty() ? "" : " (" + facts_.reason + ")") +
            ": t = " + brief_quantity(sim_.time(), "s") + ", " + std::to_string(sim_.step_count()) + " steps, " +
-           std::to_string(sim_.particle_count()) + " particles, " +
-           brief_quantity(facts_.wall_seconds, "s") + " of wall time, " + brief_quantity(facts_.rate * 1e-6, "1") +
-           " M particle-steps/s";
+           std::to_string(sim_.particle_count()) + " particles, " + brief_quantity(facts_.wall_seconds, "s") +
+           " of wall time, " + brief_quantity(facts_.rate * 1e-6, "1") + " M particle-steps/s";
   }
 
   void tell(const std::string& text) {

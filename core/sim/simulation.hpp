@@ -12,8 +12,8 @@
 namespace calx {
 
 struct SimulationOptions {
-  int threads = 0;     // 0: all
-  bool mixed = false;  // pair contacts in single precision, from exact positions; all else in double
+  int threads = 0;             // 0: all
+  bool mixed = false;          // pair contacts in single precision, from exact positions; all else in double
   std::string device = "cpu";  // "auto", "cpu", "opencl", "cuda" or "host", the last three also with ":ordinal"
   std::vector<std::string> plugin_path;
 };

@@ -100,8 +100,8 @@ class Engine {
   void prepare(int threads);
   /// Why this case cannot step on a device, one reason each; empty: it can. Call after prepare.
   std::vector<std::string> device_obstacles() const;
-  /// Steps run on the device from now on, with the same bits. Call after prepare, without device_obstacles. Throws Error
-  /// for a law text that the device's compiler refuses.
+  /// Steps run on the device from now on, with the same bits. Call after prepare, without device_obstacles. Throws
+  /// Error for a law text that the device's compiler refuses.
   void use_device(std::unique_ptr<Device> device);
   /// Brings particles and history from the device; call before looking at them. Nothing to do without one.
   void fetch() const;
@@ -258,9 +258,9 @@ class Engine {
   std::uint64_t rebuilds_ = 0, sorted_at_ = 0, touching_ = 0;
   bool count_changed_ = true;
   double largest_overlap_ = 0;
-  std::unique_ptr<Rest> rest_;  // null: off
+  std::unique_ptr<Rest> rest_;        // null: off
   std::unique_ptr<OnDevice> device_;  // null: this processor
-  double time_ = 0;             // s, of the last contacts
+  double time_ = 0;                   // s, of the last contacts
   int threads_ = 1;
 };
 

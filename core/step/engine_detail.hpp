@@ -10,9 +10,9 @@
 
 namespace calx {
 
-/// Sums run over spans of so many entries, wall rows or particles of a chunk first, then over the spans of the chunk: an
-/// order that a device of many small workers can follow; see kernels/fold.h.
-constexpr std::uint32_t kPairSpan = 256, kWallSpan = 64, kParticleSpan = 64;
+/// Sums run over spans of so many spheres or particles of a chunk first, then over the spans of the chunk: an order
+/// that a device of many small workers can follow; see kernels/fold.h.
+constexpr std::uint32_t kSpan = 64;
 
 /// What contacts store and lose, J.
 struct EnergySums {
@@ -101,9 +101,9 @@ struct Engine::Worker {
 };
 
 struct alignas(64) Engine::ChunkResult {
-  SpanSum<EnergySums> energy;  // of contacts
-  SpanSum<double> wall_work;   // J
-  double force_work = 0;       // J
+  SpanSum<EnergySums> energy;                                                    // of contacts
+  SpanSum<double> wall_work;                                                     // J
+  double force_work = 0;                                                         // J
   SpanSum<double> kinetic_translation, kinetic_rotation, gravity, gravity_work;  // J
   double largest_overlap = 0;
   std::uint32_t overlap_i = 0, overlap_j = 0;  // spheres; j = ~part for a wall

@@ -62,7 +62,7 @@ void turn_particles(const StepKernels& kernels, Particles& p, const Column<Wrenc
       b.wx = t.wx[k];
       b.wy = t.wy[k];
       b.wz = t.wz[k];
-      energy.add((start + k - chunk_first) / kParticleSpan, {t.before[k], t.after[k]});
+      energy.add((start + k - chunk_first) / kSpan, {t.before[k], t.after[k]});
     }
   }
 }
@@ -167,7 +167,7 @@ void Engine::book_half(std::size_t c, double dt, bool before) {
   ChunkResult& result = results_[c];
   SpanSum<Vec3> momentum;
   for (std::uint32_t p = chunk.first_particle; p < chunk.last_particle; ++p) {
-    const std::size_t span = (p - chunk.first_particle) / kParticleSpan;
+    const std::size_t span = (p - chunk.first_particle) / kSpan;
     const Record& b = particles.body[p];
     result.kinetic_translation.add(span, 0.25 * b.m * norm2(velocity(b)));
     if (!particles.has_clumps) result.kinetic_rotation.add(span, 0.25 * norm2(spin(b)) / b.aux);
@@ -212,7 +212,7 @@ void Engine::drift_run(std::size_t c, std::uint32_t first, std::uint32_t last, d
     const Vec3 half = velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(old) + g);
     move(b, half, dt);
     set_velocity(b, half);
-    results_[c].gravity_work.add((p - chunk_first) / kParticleSpan, b.m * dot(g, half) * dt);
+    results_[c].gravity_work.add((p - chunk_first) / kSpan, b.m * dot(g, half) * dt);
     if (!particles.has_clumps) set_spin(b, spin(b) + 0.5 * dt * b.aux * torque_of(old));
   }
   if (!particles.has_clumps) return;
@@ -240,7 +240,7 @@ void Engine::finish_run(std::size_t c, std::uint32_t first, std::uint32_t last, 
       set_spin(b, spin_of(q, i, momentum(q, i, spin(b)) + change));
     }
     if (!options.ledger) continue;
-    const std::size_t span = (p - pairs_.chunks[c].first_particle) / kParticleSpan;
+    const std::size_t span = (p - pairs_.chunks[c].first_particle) / kSpan;
     const double translation = 0.5 * b.m * norm2(velocity(b));
     result.kinetic_translation.add(span, translation);
     result.kinetic_rotation.add(span, particles.kinetic_energy(p) - translation);

@@ -38,18 +38,15 @@ struct ShapePlace {
   std::uint32_t triangles, triangle_count, edges, vertices, inwards, directions, axes, segments, points, alongs;
 };
 struct DeviceChunk {
-  std::uint32_t first_particle, last_particle, first_entry, last_entry, first_row, last_row;
-  std::uint32_t first_pair_span, first_wall_span, first_particle_span;
+  std::uint32_t first_particle, last_particle, first_sphere, last_sphere, first_particle_span, first_sphere_span;
 };
 static_assert(sizeof(Record) == 96 && sizeof(Wrench) == 48 && sizeof(Quat) == 32 && sizeof(Vec3) == 24);
-static_assert(sizeof(PartState) == 136 && sizeof(ShapePlace) == 56 && sizeof(DeviceChunk) == 36);
+static_assert(sizeof(PartState) == 136 && sizeof(ShapePlace) == 56 && sizeof(DeviceChunk) == 24);
 static_assert(sizeof(geometry::Triangle) == 192 && sizeof(geometry::Edge) == 88 && sizeof(geometry::Vertex) == 56);
-static_assert(sizeof(geometry::Axis) == 96 && sizeof(geometry::Segment) == 72 &&
-              sizeof(geometry::ProfilePoint) == 48 && sizeof(geometry::Planar) == 16);
+static_assert(sizeof(geometry::Axis) == 96 && sizeof(geometry::Segment) == 72 && sizeof(geometry::ProfilePoint) == 48 &&
+              sizeof(geometry::Planar) == 16);
 
-std::uint32_t spans(std::size_t length, std::uint32_t span) {
-  return static_cast<std::uint32_t>((length + span - 1) / span);
-}
+std::uint32_t spans(std::uint32_t length) { return (length + kSpan - 1) / kSpan; }
 
 std::uint32_t as_index(double number) { return static_cast<std::uint32_t>(number); }
 
@@ -68,9 +65,8 @@ struct Engine::OnDevice::Memory {
   explicit Memory(Device& d) : device(d) {}
   Device& device;
   DeviceModule module;
-  DeviceKernel pair_contacts, wall_contacts, sum_contacts, move_spheres, move_clumps, drift_spheres,
-      drift_clumps, kick_particles, fold_pairs, fold_walls,
-      fold_particles, fold_chunks;
+  DeviceKernel pair_contacts, wall_contacts, sum_contacts, move_spheres, move_clumps, drift_spheres, drift_clumps,
+      kick_particles, fold_pairs, fold_walls, fold_particles, fold_chunks;
   // Of the case.
   DeviceBuffer law_of, law_numbers, shapes, triangles, edges, vertices, inwards, directions, axes, segments, points,
       alongs, parts;
@@ -83,7 +79,7 @@ struct Engine::OnDevice::Memory {
   // Of a step.
   DeviceBuffer pair_out, pair_share, pair_energy, wall_out, wall_share, wall_energy, sums, particle_energy, pair_sums,
       wall_sums, particle_sums, chunk_sums, flags;
-  std::uint32_t pair_spans = 0, wall_spans = 0, particle_spans = 0;
+  std::uint32_t sphere_spans = 0, particle_spans = 0;
   std::size_t bytes = 0;
 
   /// At least so many bytes; what was there is gone when it grows.
@@ -275,22 +271,17 @@ void Engine::OnDevice::send_walls() {
 void Engine::OnDevice::send_chunks() {
   Memory& m = *memory_;
   std::vector<DeviceChunk> chunks;
-  m.pair_spans = m.wall_spans = m.particle_spans = 0;
-  for (std::size_t c = 0; c < engine_.pairs_.chunks.size(); ++c) {
-    const Chunk& k = engine_.pairs_.chunks[c];
-    const auto first_row = static_cast<std::uint32_t>(engine_.walls_.first_row[c]);
-    const auto last_row = static_cast<std::uint32_t>(engine_.walls_.first_row[c + 1]);
-    chunks.push_back({k.first_particle, k.last_particle, static_cast<std::uint32_t>(k.first_entry),
-                      static_cast<std::uint32_t>(k.last_entry), first_row, last_row, m.pair_spans, m.wall_spans,
-                      m.particle_spans});
-    m.pair_spans += spans(k.last_entry - k.first_entry, kPairSpan);
-    m.wall_spans += spans(last_row - first_row, kWallSpan);
-    m.particle_spans += spans(k.last_particle - k.first_particle, kParticleSpan);
+  m.sphere_spans = m.particle_spans = 0;
+  for (const Chunk& c : engine_.pairs_.chunks) {
+    chunks.push_back(
+        {c.first_particle, c.last_particle, c.first_sphere, c.last_sphere, m.particle_spans, m.sphere_spans});
+    m.particle_spans += spans(c.last_particle - c.first_particle);
+    m.sphere_spans += spans(c.last_sphere - c.first_sphere);
   }
   const std::size_t width = result_width();
   m.put(m.chunks, chunks);
-  m.reserve(m.pair_sums, m.pair_spans * kSums * sizeof(double));
-  m.reserve(m.wall_sums, m.wall_spans * width * sizeof(double));
+  m.reserve(m.pair_sums, m.sphere_spans * kSums * sizeof(double));
+  m.reserve(m.wall_sums, m.sphere_spans * width * sizeof(double));
   m.reserve(m.particle_sums, m.particle_spans * kParticleEnergies * sizeof(double));
   m.reserve(m.chunk_sums, chunks.size() * width * sizeof(double));
 }
@@ -348,7 +339,7 @@ void Engine::OnDevice::drift(double dt) {
   std::size_t span = 0;
   for (std::size_t c = 0; c < engine_.results_.size(); ++c) {
     const Chunk& k = engine_.pairs_.chunks[c];
-    const std::size_t end = span + spans(k.last_particle - k.first_particle, kParticleSpan);
+    const std::size_t end = span + spans(k.last_particle - k.first_particle);
     for (; span < end; ++span) engine_.results_[c].gravity_work.total += sums[span * kParticleEnergies];
   }
   engine_.results_.front().stale = flags[flag_stale] != 0;
@@ -358,10 +349,10 @@ void Engine::OnDevice::launch_integration(const Numbers& n) {
   Memory& m = *memory_;
   const bool clumps = engine_.particles.has_clumps;
   if (engine_.options.verlet)
-    device_->launch(m.kick_particles, n.particles,
-                    arguments(n, static_cast<std::uint32_t>(clumps), m.body, m.member, m.turn, m.inertia,
-                              m.first_sphere, m.arms, m.sums, m.wrench, m.listed, m.margin, m.particle_energy,
-                              m.flags));
+    device_->launch(
+        m.kick_particles, n.particles,
+        arguments(n, static_cast<std::uint32_t>(clumps), m.body, m.member, m.turn, m.inertia, m.first_sphere, m.arms,
+                  m.sums, m.wrench, m.listed, m.margin, m.particle_energy, m.flags));
   else if (clumps)
     device_->launch(m.move_clumps, n.particles,
                     arguments(n, m.body, m.member, m.turn, m.inertia, m.first_sphere, m.arms, m.sums, m.listed,
@@ -397,22 +388,22 @@ void Engine::OnDevice::step(double dt) {
              arguments(n, m.row_first, m.in_first, m.in_middle, m.in_entry, m.pair_touching, m.pair_out, m.wall_first,
                        m.wall_counts, m.wall_out, m.sums));
   if (n.particles > 0) launch_integration(n);
-  if (m.pair_spans > 0)
-    d.launch(m.fold_pairs, m.pair_spans,
-             arguments(n, m.pair_spans, m.chunks, m.pair_i, m.pair_j, m.pair_touching, m.pair_share, m.pair_energy,
-                       m.pair_sums));
-  if (m.wall_spans > 0)
-    d.launch(m.fold_walls, m.wall_spans,
-             arguments(n, m.wall_spans, m.chunks, m.row_sphere, m.row_part, m.wall_counts, m.wall_out, m.wall_share,
-                       m.wall_energy, m.wall_sums));
+  if (m.sphere_spans > 0) {
+    d.launch(m.fold_pairs, m.sphere_spans,
+             arguments(n, m.sphere_spans, m.chunks, m.pair_i, m.pair_j, m.row_first, m.pair_touching, m.pair_share,
+                       m.pair_energy, m.pair_sums));
+    d.launch(m.fold_walls, m.sphere_spans,
+             arguments(n, m.sphere_spans, m.chunks, m.wall_first, m.row_sphere, m.row_part, m.wall_counts, m.wall_out,
+                       m.wall_share, m.wall_energy, m.wall_sums));
+  }
   if (n.ledger && m.particle_spans > 0)
     d.launch(m.fold_particles, m.particle_spans,
              arguments(n, m.particle_spans, m.chunks, m.particle_energy, m.particle_sums));
   const std::uint32_t halves = clumps && !engine_.options.verlet;
   if (n.chunks > 0)
     d.launch(m.fold_chunks, n.chunks,
-             arguments(n, halves, m.pair_spans, m.wall_spans, m.particle_spans, m.chunks,
-                       m.pair_sums, m.wall_sums, m.particle_sums, m.chunk_sums));
+             arguments(n, halves, m.sphere_spans, m.particle_spans, m.chunks, m.pair_sums, m.wall_sums, m.particle_sums,
+                       m.chunk_sums));
   take_results();
 }
 

@@ -148,8 +148,8 @@ bool Engine::solve_pairs(std::size_t c, Worker& w, const PairBlock& pairs, const
   // A little less than the largest share: the question there is asked without a division.
   const double largest = results_[c].largest_overlap * (1 - 1e-6);
   const bool record = law_of_pairs<Precision>(c, w, pairs, list, largest, t, dt);
-  kernels.write_history(pairs_.history.data() + pairs_.chunks[c].first_entry * history_.columns, history_.columns, pairs,
-                        list.state_count, w.pair_work<Precision>().scratch.state(0));
+  kernels.write_history(pairs_.history.data() + pairs_.chunks[c].first_entry * history_.columns, history_.columns,
+                        pairs, list.state_count, w.pair_work<Precision>().scratch.state(0));
   return record;
 }
 
@@ -181,7 +181,7 @@ void Engine::take_pairs(std::size_t c, const PairBlock& pairs, PairWork<Precisio
   for (std::uint32_t k = 0; k < n; ++k) {
     const EnergySums row{block.out(CALX_OUT_ELASTIC)[k], block.out(CALX_OUT_FRICTION)[k],
                          block.out(CALX_OUT_DAMPING)[k], block.out(CALX_OUT_PLASTIC)[k]};
-    result.energy.add(pairs.entry[k] / kPairSpan, row);
+    result.energy.add((pairs.i[k] - chunk.first_sphere) / kSpan, row);
   }
 }
 

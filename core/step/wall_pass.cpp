@@ -162,7 +162,7 @@ void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, doubl
     for (std::uint32_t k = 0; k < n; ++k) column[w.wall_slot[k]] = state[k];
   }
   for (std::uint32_t k = 0; k < n; ++k) {
-    const std::size_t span = (w.wall_slot[k] / kWallContacts - walls_.first_row[c]) / kWallSpan;
+    const std::size_t span = (w.wall_sphere[k] - pairs_.chunks[c].first_sphere) / kSpan;
     if (span != result.load_span) close_load_span(result);
     result.load_span = span;
     add_wall_contact(w, k, sphere_wrench_[w.wall_sphere[k]], result.span_load[w.wall_part[k]]);

@@ -86,7 +86,8 @@ class CommandLine(CalxTest):
                             (["run", path, "--until", -1], r'--until: "-1" is not a number, 0 or more'),
                             (["run", path, "--set", "time/end=1"], r"--set time/end=1: expected /json/pointer=value, for instance"),
                             (["run", path, "--set", "/time/end"], r"--set /time/end: expected /json/pointer=value"),
-                            (["run", path, "--device", "cuda"], r'--device cuda: .* "cpu" only'),
+                            (["run", path, "--device", "cuda"], r"device kind cuda needs an NVIDIA driver"),
+                            (["run", path, "--device", "gpu"], r"--device gpu: expected auto, cpu, opencl or cuda"),
                             (["run", path, "--precision", "half"], r'--precision half: .*"double"'),
                             (["check"], r"check: a case file is needed"),
                             (["bench", "--threads", "-3"], r'--threads: "-3" is not a whole number above 0')):
