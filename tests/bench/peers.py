@@ -191,6 +191,8 @@ def main():
     parser.add_argument("--machine", default=machine_name())
     parser.add_argument("--gate", action="store_true", help="the gate only")
     parser.add_argument("--table", action="store_true", help="measure every goal, with few rounds, and print the table")
+    parser.add_argument("--parts", nargs="+", choices=["beds", "clumps", "growth", "law", "rest"], default=[],
+                        help="only these parts of the table")
     parser.add_argument("--law-inlined", help="the program bench_law_inlined (default: beside calx)")
     parser.add_argument("--dry", action="store_true", help="few steps, one round, nothing recorded: only a check")
     options = parser.parse_args()
