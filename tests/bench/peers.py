@@ -92,7 +92,7 @@ class Job:
 
 def rounds(jobs, options, number):
     """Runs the jobs number times, interleaved, and keeps them in options.done. A job that its code refuses is left out, with the reason on stderr."""
-    options.__dict__.setdefault("done", []).append(jobs)
+    options.done.append(jobs)
     alive = list(jobs)
     for n in range(number):
         for job in alive[n % max(1, len(alive)):] + alive[:n % max(1, len(alive))]:
@@ -196,6 +196,7 @@ def main():
     parser.add_argument("--law-inlined", help="the program bench_law_inlined (default: beside calx)")
     parser.add_argument("--dry", action="store_true", help="few steps, one round, nothing recorded: only a check")
     options = parser.parse_args()
+    options.done = []
     options.calx = str(pathlib.Path(options.calx).resolve())
     options.law_inlined = options.law_inlined or str(pathlib.Path(options.calx).parent / "bench_law_inlined")
     if options.dry:

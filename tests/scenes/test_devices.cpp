@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <memory>
 
 #include "base/error.hpp"
 #include "compute/device.hpp"
@@ -72,11 +74,12 @@ void check_same(const Outcome& a, const Outcome& b) {
   for (std::size_t k = 0; k < a.loads.size(); ++k) CHECK(norm(a.loads[k] - b.loads[k]) == 0);
 }
 
-void check_scene(const CaseFile& file, int steps) {
+/// least: contacts there must be at the end for the scene to mean something.
+void check_scene(const CaseFile& file, int steps, std::uint64_t least = 400) {
   Simulation reference(file, on("cpu"));
   advance(reference, steps);
   const Outcome expected = outcome(reference);
-  CHECK(expected.counters.touching > 400);
+  CHECK(expected.counters.touching > least);
   CHECK(expected.counters.rebuilds >= 4);
   for (const std::string& device : devices()) {
     CAPTURE(device);
@@ -97,4 +100,82 @@ TEST_CASE("cohesive clumps on a shaken floor in a periodic box: the bits of the 
 TEST_CASE("frictional spheres in a box: the bits of the processor on every device") {
   check_scene(sphere_bed("euler"), 350);
   check_scene(sphere_bed("verlet"), 200);
+}
+
+namespace {
+
+/// Powder of clumps with EpAM on itself and Hertz-Mindlin on steel, poured on a turning rotary valve over an inclined
+/// mesh: triangles, surfaces of revolution, two laws of different history, a part that moves.
+CaseFile valve() {
+  const std::string stl = CALX_TEST_CACHE "/plate.stl";
+  std::ofstream(stl) << "solid plate\n"
+                        "facet normal 0 0 1\nouter loop\nvertex 30 -40 570\nvertex 60 -40 563\nvertex 60 40 563\n"
+                        "endloop\nendfacet\n"
+                        "facet normal 0 0 1\nouter loop\nvertex 30 -40 570\nvertex 60 40 563\nvertex 30 40 570\n"
+                        "endloop\nendfacet\nendsolid plate\n";
+  CaseText c;
+  c.gravity = "[0, 0, -9.81]";
+  c.domain = R"({"min": [-0.1, -0.1, 0.4], "max": [0.2, 0.1, 0.8]})";
+  c.time = R"({"step": 2e-5, "end": 10})";
+  c.materials = kTwoMaterials;
+  c.contacts = R"([
+    {"between": ["sand", "sand"], "law": "calx.epam",
+     "parameters": {"restitution": 0.4, "friction": 0.5, "plasticity": 0.4, "surface_energy": 0.1, "rolling": "epsd",
+                    "rolling_friction": 0.05}},
+    {"between": ["sand", "steel"], "law": "calx.hertz-mindlin", "parameters": {"restitution": 0.5, "friction": 0.35}}])";
+  c.parts = R"([
+    {"name": "housing", "geometry": "calx.rotary-housing", "material": "steel"},
+    {"name": "rotor", "geometry": "calx.rotary-valve", "material": "steel", "motion": "turn"},
+    {"name": "plate", "geometry": "calx.mesh", "material": "steel",
+     "parameters": {"file": ")" +
+            stl + R"(", "unit": "mm", "allow_open": "yes"}}])";
+  c.more = R"("motions": {"turn": {"plugin": "calx.reciprocate", "parameters": {"origin": [0.0577, 0, 0.535],
+               "axis": [0, 1, 0], "swing_deg": 180, "stroke": 0.1, "dwell": 0.01, "cycles": 3}}}, "energy": true)";
+  std::vector<Given> grains = lattice(700, 12, 12, 2.8e-3, {0.0415, -0.016, 0.5745}, 5e-5, 0.3);
+  for (Given& g : grains) g.v.z -= 1;
+  return with_given(c, "grain", grains);
+}
+
+}  // namespace
+
+TEST_CASE("EpAM and Hertz-Mindlin on a mesh and a turning rotary valve: the bits of the processor on every device") {
+  check_scene(valve(), 1500, 200);
+}
+
+TEST_CASE("a checkpoint goes on with on another device, to the same bits") {
+  const CaseFile file = valve();
+  Simulation reference(file, on("cpu"));
+  advance(reference, 1600);
+  const Outcome expected = outcome(reference);
+  auto sim = std::make_unique<Simulation>(file, on("cpu"));
+  advance(*sim, 400);
+  std::vector<std::string> order = devices();
+  order.push_back("cpu");
+  for (const std::string& device : order) {
+    MemoryState state;
+    sim->save(state);
+    sim = std::make_unique<Simulation>(file, on(device));
+    sim->load(state);
+    advance(*sim, 1200 / static_cast<int>(order.size()));
+  }
+  advance(*sim, 1200 % static_cast<int>(order.size()));
+  check_same(outcome(*sim), expected);
+}
+
+TEST_CASE("what a device cannot do runs on the processor, and says so before the run starts") {
+  Simulation sim(pouring("euler"), on("host"));
+  CHECK(sim.device().find("cpu, because of 1 obstacle to devices: particle forces (/forces)") == 0);
+  const auto messages = sim.take_messages();
+  REQUIRE(messages.size() == 1);
+  CHECK(messages[0].find("--device host: runs on the cpu") != std::string::npos);
+  SimulationOptions mixed = on("cuda:1");
+  mixed.mixed = true;
+  CHECK(Simulation(sphere_bed("euler"), mixed).device().find("mixed precision is not there on devices") !=
+        std::string::npos);
+}
+
+TEST_CASE("a source that pours and particles that leave: the bits of the processor on every device") {
+  CaseFile file = pouring("verlet");
+  file.settings.forces.clear();
+  check_scene(file, 900, 150);
 }
