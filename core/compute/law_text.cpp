@@ -6,30 +6,33 @@ namespace calx {
 namespace {
 
 constexpr const char* kMacros = R"(
-#define CALX_TAKE_PAIR(name, unit, lo, hi, preset, flags, doc) pair.name = numbers[at++];
-#define CALX_TAKE_STATE(name, unit, lo, hi, preset, flags, doc)  \
-  state.name = starts ? numbers[at] : history[(u64)k * stride]; \
-  ++at;                                                         \
+#ifndef CALX_ONE_LAW
+#define CALX_TAKE_PAIR(name, unit, lo, hi, preset, flags, doc) pair.name = (real)numbers[at++];
+#define CALX_TAKE_STATE(name, unit, lo, hi, preset, flags, doc)        \
+  state.name = (real)(starts ? numbers[at] : history[(u64)k * stride]); \
+  ++at;                                                               \
   ++k;
 #define CALX_GIVE_STATE(name, unit, lo, hi, preset, flags, doc) history[(u64)(k++) * stride] = state.name;
 /* One law of a list: numbers from AT on, history from column STATE on. */
-#define CALX_ONE_LAW(law, AT, STATE)                                                             \
-  law##_pair_f64 pair;                                                                           \
-  law##_prop_f64 prop;                                                                           \
-  law##_state_f64 state;                                                                         \
-  u32 at = AT, k = STATE;                                                                        \
-  prop.calx_unused = 0.0;                                                                        \
-  law##_pair_LIST(CALX_TAKE_PAIR) law##_state_LIST(CALX_TAKE_STATE)                              \
-  w.fx = w.fy = w.fz = w.mx = w.my = w.mz = w.elastic = w.friction = w.damping = w.plastic = 0.0; \
-  law##_eval_f64(c, &pair, &prop, &prop, &state, &w);                                            \
-  k = STATE;                                                                                     \
+#define CALX_ONE_LAW(law, AT, STATE)                                                                  \
+  CALX_ID(law##_pair) pair;                                                                           \
+  CALX_ID(law##_prop) prop;                                                                           \
+  CALX_ID(law##_state) state;                                                                         \
+  u32 at = AT, k = STATE;                                                                             \
+  prop.calx_unused = R(0.0);                                                                          \
+  law##_pair_LIST(CALX_TAKE_PAIR) law##_state_LIST(CALX_TAKE_STATE)                                   \
+  w.fx = w.fy = w.fz = w.mx = w.my = w.mz = R(0.0);                                                   \
+  w.elastic = w.friction = w.damping = w.plastic = R(0.0);                                            \
+  CALX_ID(law##_eval)(c, &pair, &prop, &prop, &state, &w);                                            \
+  k = STATE;                                                                                          \
   law##_state_LIST(CALX_GIVE_STATE)
+#endif
 
 /* The laws of list number `list` for the contact c, whose fn_before is set here. history: of the contact, columns
  * `stride` apart; starts: it did not touch at the last step. Returns 0 for a list that the case does not give. */
-FN u32 calx_contact_laws(u32 list, calx_contact_f64* c, GLOBAL double* history, u64 stride, u32 starts,
-                         GLOBAL const double* numbers, calx_wrench_f64* out) {
-  calx_wrench_f64 w;
+FN u32 CALX_ID(calx_contact_laws)(u32 list, CALX_ID(calx_contact) * c, GLOBAL double* history, u64 stride, u32 starts,
+                                  GLOBAL const double* numbers, CALX_ID(calx_wrench) * out) {
+  CALX_ID(calx_wrench) w;
 )";
 
 constexpr const char* kAdd = R"(      out->fx += w.fx;
@@ -67,7 +70,7 @@ LawProgram law_program(const std::vector<const LawList*>& laws) {
       std::string source(term.table->source, term.table->source_size);
       if (std::none_of(out.laws.begin(), out.laws.end(), [&](const TextPart& p) { return p.text == source; }))
         out.laws.push_back({term.id, std::move(source)});
-      const char* before = t == 0 ? "0.0" : "out->fx * c->nx + out->fy * c->ny + out->fz * c->nz";
+      const char* before = t == 0 ? "R(0.0)" : "out->fx * c->nx + out->fy * c->ny + out->fz * c->nz";
       out.text += std::string("    {\n      c->fn_before = ") + before + ";\n      CALX_ONE_LAW(" + term.table->symbol +
                   ", " + number(out.numbers.size()) + ", " + number(term.state_offset) + ")\n";
       out.text += t == 0 ? "      *out = w;\n" : kAdd;

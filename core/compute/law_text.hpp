@@ -11,8 +11,8 @@ namespace calx {
 
 /// What kernels need to evaluate contacts.
 struct LawProgram {
-  std::vector<TextPart> laws;         // texts of the plugins, each once, in double precision
-  std::string text;                   // the function calx_contact_laws
+  std::vector<TextPart> laws;         // texts of the plugins, each once
+  std::string text;                   // the function CALX_ID(calx_contact_laws), in the precision of the laws before it
   std::vector<double> numbers;        // pair rows and presets that it reads
   std::vector<std::uint32_t> law_of;  // per ordered material pair: number of its list, kNoLaw where there is none
   static constexpr std::uint32_t kNoLaw = 0xFFFFFFFFu;

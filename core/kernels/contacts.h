@@ -1,16 +1,13 @@
-/* contacts.h: contacts between spheres, one item for each entry of the pair list. calx_contact_laws is generated from
- * the laws of the case. */
-#ifndef CALX_CONTACTS_H
-#define CALX_CONTACTS_H
+/* contacts.h: contacts between spheres, one item for each entry of the pair list. Stands in a module once for each
+ * precision of the laws, after their text: geometry is that of doubles, the law and what follows are of `real`.
+ * calx_contact_laws is generated from the laws of the case. */
 
 /* Values of an entry that touches, in columns `entries` apart: force on i, torque on i, torque that j loses. */
-#define PAIR_VALUES 9u
-
-KERNEL(pair_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT material,
-       GLOBAL const u32* RESTRICT first, GLOBAL const u32* RESTRICT second, GLOBAL u8* RESTRICT touching,
-       GLOBAL double* RESTRICT history, GLOBAL const u32* RESTRICT law_of, GLOBAL const double* RESTRICT law_numbers,
-       GLOBAL double* RESTRICT out, GLOBAL double* RESTRICT share, GLOBAL double* RESTRICT energy,
-       GLOBAL u32* RESTRICT flags) {
+KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT spheres,
+       GLOBAL const u32* RESTRICT material, GLOBAL const u32* RESTRICT first, GLOBAL const u32* RESTRICT second,
+       GLOBAL u8* RESTRICT touching, GLOBAL double* RESTRICT history, GLOBAL const u32* RESTRICT law_of,
+       GLOBAL const double* RESTRICT law_numbers, GLOBAL real* RESTRICT out, GLOBAL double* RESTRICT share,
+       GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 e = ITEM;
   if (e >= n.entries) return;
   const u32 i = first[e], j = second[e];
@@ -28,37 +25,39 @@ KERNEL(pair_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
   }
   const u32 starts = touching[e] == 0;
   touching[e] = 1;
-  const double distance = sqrt_f64(d2), inverse = 1.0 / distance;
-  const vec3 normal = make3_f64(x * inverse, y * inverse, z * inverse);
-  calx_contact_f64 c;
-  c.overlap = a->r + b->r - distance;
-  c.nx = normal.x;
-  c.ny = normal.y;
-  c.nz = normal.z;
-  c.r_eff = a->r * b->r / (a->r + b->r);
-  c.m_eff = a->m * b->m / (a->m + b->m);
-  c.r_i = a->r;
-  c.r_j = b->r;
-  c.dt = n.dt;
-  const double arm_i = a->r - 0.5 * c.overlap, arm_j = b->r - 0.5 * c.overlap;
-  c.wx = a->wx - b->wx;
-  c.wy = a->wy - b->wy;
-  c.wz = a->wz - b->wz;
-  const double sx = arm_i * a->wx + arm_j * b->wx, sy = arm_i * a->wy + arm_j * b->wy,
-               sz = arm_i * a->wz + arm_j * b->wz;
-  c.vx = a->vx - b->vx - (sy * normal.z - sz * normal.y);
-  c.vy = a->vy - b->vy - (sz * normal.x - sx * normal.z);
-  c.vz = a->vz - b->vz - (sx * normal.y - sy * normal.x);
-  share[e] = 0.5 * c.overlap / c.r_eff;
+  const double distance = sqrt_f64(d2), inverse = 1.0 / distance, overlap = reach - distance;
+  CALX_ID(calx_contact) c;
+  c.overlap = (real)overlap;
+  c.nx = (real)(x * inverse);
+  c.ny = (real)(y * inverse);
+  c.nz = (real)(z * inverse);
+  c.r_eff = (real)(a->r * b->r / reach);
+  const real mass_i = (real)a->m, mass_j = (real)b->m;
+  c.m_eff = mass_i * mass_j / (mass_i + mass_j);
+  c.r_i = (real)a->r;
+  c.r_j = (real)b->r;
+  c.dt = (real)n.dt;
+  const real arm_i = (real)(a->r - 0.5 * overlap), arm_j = (real)(b->r - 0.5 * overlap);
+  const real wix = (real)a->wx, wiy = (real)a->wy, wiz = (real)a->wz;
+  const real wjx = (real)b->wx, wjy = (real)b->wy, wjz = (real)b->wz;
+  c.wx = wix - wjx;
+  c.wy = wiy - wjy;
+  c.wz = wiz - wjz;
+  const real sx = arm_i * wix + arm_j * wjx, sy = arm_i * wiy + arm_j * wjy, sz = arm_i * wiz + arm_j * wjz;
+  c.vx = (real)a->vx - (real)b->vx - (sy * c.nz - sz * c.ny);
+  c.vy = (real)a->vy - (real)b->vy - (sz * c.nx - sx * c.nz);
+  c.vz = (real)a->vz - (real)b->vz - (sx * c.ny - sy * c.nx);
+  share[e] = 0.5 * (double)c.overlap / (double)c.r_eff;
 
   const u32 pair = material[i] * n.materials + material[j];
-  calx_wrench_f64 w;
-  if (!calx_contact_laws(law_of[pair], &c, history + (u64)e * n.columns, (u64)1, starts, law_numbers, &w)) {
+  CALX_ID(calx_wrench) w;
+  if (!CALX_ID(calx_contact_laws)(law_of[pair], &c, history + (u64)e * n.columns, (u64)1, starts, law_numbers, &w)) {
     ATOMIC_MAX(flags + FLAG_MISSING_LAW, pair + 1u);
     touching[e] = 0;
     return;
   }
-  const vec3 turning = cross3_f64(normal, make3_f64(w.fx, w.fy, w.fz));
+  const CALX_ID(vec3) turning =
+      CALX_ID(cross3)(CALX_ID(make3)(c.nx, c.ny, c.nz), CALX_ID(make3)(w.fx, w.fy, w.fz));
   const u64 stride = n.entries;
   out[e] = w.fx;
   out[stride + e] = w.fy;
@@ -76,5 +75,3 @@ KERNEL(pair_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
     energy[3 * stride + e] = w.plastic;
   }
 }
-
-#endif

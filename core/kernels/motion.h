@@ -10,48 +10,93 @@ typedef struct wrench {
   double fx, fy, fz, tx, ty, tz; /* N, N m */
 } wrench;
 
-FN void take_reaction(wrench* w, GLOBAL const double* out, GLOBAL const u8* touching, u64 stride, u32 e) {
-  if (!touching[e]) return;
-  w->fx -= out[e];
-  w->fy -= out[stride + e];
-  w->fz -= out[2 * stride + e];
-  w->tx -= out[6 * stride + e];
-  w->ty -= out[7 * stride + e];
-  w->tz -= out[8 * stride + e];
+/* Adds what the own chunk's entries do to sphere s, then, by the second, what entries of chunks before it do.
+ * in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
+ * chunks before it up to in_first[s + 1]. */
+#define ADD_OWN_ENTRIES(w)                                  \
+  for (u32 k = in_first[s]; k < in_middle[s]; ++k) {        \
+    const u32 e = in_entry[k];                              \
+    if (!touching[e]) continue;                             \
+    w.fx -= pair_out[e];                                    \
+    w.fy -= pair_out[stride + e];                           \
+    w.fz -= pair_out[2 * stride + e];                       \
+    w.tx -= pair_out[6 * stride + e];                       \
+    w.ty -= pair_out[7 * stride + e];                       \
+    w.tz -= pair_out[8 * stride + e];                       \
+  }                                                         \
+  for (u32 e = row_first[s]; e < row_first[s + 1]; ++e) {   \
+    if (!touching[e]) continue;                             \
+    w.fx += pair_out[e];                                    \
+    w.fy += pair_out[stride + e];                           \
+    w.fz += pair_out[2 * stride + e];                       \
+    w.tx += pair_out[3 * stride + e];                       \
+    w.ty += pair_out[4 * stride + e];                       \
+    w.tz += pair_out[5 * stride + e];                       \
+  }
+#define ADD_OTHER_ENTRIES(w)                                \
+  for (u32 k = in_middle[s]; k < in_first[s + 1]; ++k) {    \
+    const u32 e = in_entry[k];                              \
+    if (!touching[e]) continue;                             \
+    w.fx -= pair_out[e];                                    \
+    w.fy -= pair_out[stride + e];                           \
+    w.fz -= pair_out[2 * stride + e];                       \
+    w.tx -= pair_out[6 * stride + e];                       \
+    w.ty -= pair_out[7 * stride + e];                       \
+    w.tz -= pair_out[8 * stride + e];                       \
+  }
+
+FN void add_walls(wrench* w, u32 first, u32 last, GLOBAL const u32* counts, GLOBAL const double* out, u64 stride) {
+  for (u32 row = first; row < last; ++row)
+    for (u32 k = 0; k < counts[row]; ++k) {
+      const u64 at = (u64)row * WALL_CONTACTS + k;
+      w->fx += out[at];
+      w->fy += out[stride + at];
+      w->fz += out[2 * stride + at];
+      w->tx += out[3 * stride + at];
+      w->ty += out[4 * stride + at];
+      w->tz += out[5 * stride + at];
+    }
 }
 
-/* in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
- * chunks before it up to in_first[s + 1]. */
-KERNEL(sum_contacts, step_numbers n, GLOBAL const u32* RESTRICT row_first, GLOBAL const u32* RESTRICT in_first,
-       GLOBAL const u32* RESTRICT in_middle, GLOBAL const u32* RESTRICT in_entry, GLOBAL const u8* RESTRICT touching,
-       GLOBAL const double* RESTRICT pair_out, GLOBAL const u32* RESTRICT wall_first,
-       GLOBAL const u32* RESTRICT wall_counts, GLOBAL const double* RESTRICT wall_out, GLOBAL wrench* RESTRICT sums) {
+#define SUM_ARGUMENTS(scalar)                                                                                          \
+  step_numbers n, GLOBAL const u32 *RESTRICT row_first, GLOBAL const u32 *RESTRICT in_first,                           \
+      GLOBAL const u32 *RESTRICT in_middle, GLOBAL const u32 *RESTRICT in_entry, GLOBAL const u8 *RESTRICT touching,   \
+      GLOBAL const scalar *RESTRICT pair_out, GLOBAL const u32 *RESTRICT wall_first,                                   \
+      GLOBAL const u32 *RESTRICT wall_counts, GLOBAL const double *RESTRICT wall_out, GLOBAL wrench *RESTRICT sums
+
+KERNEL(sum_contacts, SUM_ARGUMENTS(double)) {
   const u32 s = ITEM;
   if (s >= n.spheres) return;
+  const u64 stride = n.entries;
   wrench w;
   w.fx = w.fy = w.fz = w.tx = w.ty = w.tz = 0.0;
-  const u64 stride = n.entries, wall_stride = (u64)n.wall_rows * WALL_CONTACTS;
-  for (u32 k = in_first[s]; k < in_middle[s]; ++k) take_reaction(&w, pair_out, touching, stride, in_entry[k]);
-  for (u32 e = row_first[s]; e < row_first[s + 1]; ++e) {
-    if (!touching[e]) continue;
-    w.fx += pair_out[e];
-    w.fy += pair_out[stride + e];
-    w.fz += pair_out[2 * stride + e];
-    w.tx += pair_out[3 * stride + e];
-    w.ty += pair_out[4 * stride + e];
-    w.tz += pair_out[5 * stride + e];
-  }
-  for (u32 row = wall_first[s]; row < wall_first[s + 1]; ++row)
-    for (u32 k = 0; k < wall_counts[row]; ++k) {
-      const u64 at = (u64)row * WALL_CONTACTS + k;
-      w.fx += wall_out[at];
-      w.fy += wall_out[wall_stride + at];
-      w.fz += wall_out[2 * wall_stride + at];
-      w.tx += wall_out[3 * wall_stride + at];
-      w.ty += wall_out[4 * wall_stride + at];
-      w.tz += wall_out[5 * wall_stride + at];
-    }
-  for (u32 k = in_middle[s]; k < in_first[s + 1]; ++k) take_reaction(&w, pair_out, touching, stride, in_entry[k]);
+  ADD_OWN_ENTRIES(w)
+  add_walls(&w, wall_first[s], wall_first[s + 1], wall_counts, wall_out, (u64)n.wall_rows * WALL_CONTACTS);
+  ADD_OTHER_ENTRIES(w)
+  sums[s] = w;
+}
+
+/* Mixed precision: what the own chunk's entries do is a sum of single precision, added last. */
+typedef struct lean_wrench {
+  float fx, fy, fz, tx, ty, tz; /* N, N m */
+} lean_wrench;
+KERNEL(sum_contacts_mixed, SUM_ARGUMENTS(float)) {
+  const u32 s = ITEM;
+  if (s >= n.spheres) return;
+  const u64 stride = n.entries;
+  lean_wrench own;
+  own.fx = own.fy = own.fz = own.tx = own.ty = own.tz = 0.0f;
+  ADD_OWN_ENTRIES(own)
+  wrench w;
+  w.fx = w.fy = w.fz = w.tx = w.ty = w.tz = 0.0;
+  add_walls(&w, wall_first[s], wall_first[s + 1], wall_counts, wall_out, (u64)n.wall_rows * WALL_CONTACTS);
+  ADD_OTHER_ENTRIES(w)
+  w.fx += own.fx;
+  w.fy += own.fy;
+  w.fz += own.fz;
+  w.tx += own.tx;
+  w.ty += own.ty;
+  w.tz += own.tz;
   sums[s] = w;
 }
 

@@ -75,7 +75,8 @@ std::string check_case(const RunOptions& options) {
   line("Memory: " + (megabytes < 1 ? "below 1" : "about " + brief_quantity(megabytes, "1")) + " MB");
   line("Cost: " + (cost < 1 ? "below 1 s" : "about " + clock_text(cost)) + " on " + cores + " at " +
        format_number(kSphereStepsPerCore * threads / 1e6) + " M sphere-steps/s (estimate)");
-  line("Device: " + sim.device() + "; " + (options.simulation.mixed ? "mixed" : "double") + " precision, " + cores);
+  line("Device: " + sim.device() + "; " + (options.simulation.mixed ? "mixed" : "double") + " precision, " +
+       (sim.fast() ? "fast" : "exact") + " arithmetic, " + cores);
   line("Materials (SI units):");
   for (const auto& m : c.materials) {
     std::string text;

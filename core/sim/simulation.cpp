@@ -174,7 +174,9 @@ void build_engine(World& w, const SimulationOptions& options) {
   DeviceChoice choice = choose_device(options.device, e.device_obstacles());
   w.device = choice.text;
   if (choice.differs) w.say("--device " + options.device + ": runs on the " + choice.text);
-  if (choice.device) e.use_device(std::move(choice.device));
+  w.fast = options.fast && choice.device;
+  if (options.fast && !choice.device) w.say("--arithmetic fast is for devices; the processor computes exactly");
+  if (choice.device) e.use_device(std::move(choice.device), options.fast);
 }
 
 void build_sensors(World& w) {
@@ -227,6 +229,7 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options)
 Simulation::~Simulation() = default;
 
 const CaseSettings& Simulation::settings() const { return impl_->w.c; }
+bool Simulation::fast() const { return impl_->w.fast; }
 const std::string& Simulation::device() const { return impl_->w.device; }
 std::size_t Simulation::particle_count() const { return impl_->w.engine.particles.count(); }
 const WorldView& Simulation::world() const { return impl_->w; }

@@ -15,6 +15,7 @@ struct SimulationOptions {
   int threads = 0;             // 0: all
   bool mixed = false;          // pair contacts in single precision, from exact positions; all else in double
   std::string device = "cpu";  // "auto", "cpu", "opencl", "cuda" or "host", the last three also with ":ordinal"
+  bool fast = false;           // devices may contract a * b + c: other last digits than the processor's
   std::vector<std::string> plugin_path;
 };
 
@@ -35,6 +36,7 @@ class Simulation {
   const CaseSettings& settings() const;
   /// Where steps run, and why there.
   const std::string& device() const;
+  bool fast() const;  // on a device that may contract a * b + c
   std::size_t particle_count() const;
   const WorldView& world() const;
   double time() const;

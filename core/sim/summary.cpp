@@ -125,7 +125,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
                      {"seed", c.seed},
                      {"device", s.device()},
                      {"precision", facts.mixed ? "mixed" : "double"},
-                     {"arithmetic", "exact"},
+                     {"arithmetic", s.fast() ? "fast" : "exact"},
                      {"threads", facts.threads}};
   j["presets"] = s.presets();
   j["assumptions"] = c.assumptions;

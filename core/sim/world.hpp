@@ -38,6 +38,7 @@ struct World final : WorldView, EventView {
   Engine engine;
   std::vector<StepLimit> limits;
   std::string device;  // where steps run, and why there
+  bool fast = false;
   std::vector<std::string> messages;
   double dt = 0, now = 0;
   std::uint64_t steps = 0;

@@ -400,13 +400,12 @@ std::vector<std::string> Engine::device_obstacles() const {
   for (const std::string& law : laws_without_text(laws))
     reasons.push_back("law \"" + law + "\" has no law text, only native code");
   if (!forces.empty()) reasons.push_back("particle forces (/forces) have native code only");
-  if (options.mixed) reasons.push_back("mixed precision is not there on devices");
   if (options.rest.on) reasons.push_back("particles at rest (/rest) are not there on devices");
   return reasons;
 }
 
-void Engine::use_device(std::unique_ptr<Device> device) {
-  device_ = std::make_unique<OnDevice>(std::move(device), *this);
+void Engine::use_device(std::unique_ptr<Device> device, bool fast) {
+  device_ = std::make_unique<OnDevice>(std::move(device), *this, fast);
 }
 
 void Engine::fetch() const {

@@ -100,9 +100,9 @@ class Engine {
   void prepare(int threads);
   /// Why this case cannot step on a device, one reason each; empty: it can. Call after prepare.
   std::vector<std::string> device_obstacles() const;
-  /// Steps run on the device from now on, with the same bits. Call after prepare, without device_obstacles. Throws
-  /// Error for a law text that the device's compiler refuses.
-  void use_device(std::unique_ptr<Device> device);
+  /// Steps run on the device from now on, with the same bits unless fast. Call after prepare, without device_obstacles.
+  /// Throws Error for a law text that the device's compiler refuses.
+  void use_device(std::unique_ptr<Device> device, bool fast);
   /// Brings particles and history from the device; call before looking at them. Nothing to do without one.
   void fetch() const;
   /// First half of a step: verlet moves particles to t + dt; euler does nothing.

@@ -103,26 +103,34 @@ struct Engine::OnDevice::Memory {
   }
 };
 
-Engine::OnDevice::OnDevice(std::unique_ptr<Device> device, Engine& engine)
+Engine::OnDevice::OnDevice(std::unique_ptr<Device> device, Engine& engine, bool fast)
     : device_(std::move(device)), engine_(engine), memory_(std::make_unique<Memory>(*device_)) {
-  build();
+  build(fast);
   send_shapes();
 }
 
 Engine::OnDevice::~OnDevice() = default;
 
-void Engine::OnDevice::build() {
+void Engine::OnDevice::build(bool fast) {
   Memory& m = *memory_;
   const LawProgram laws = law_program(engine_.laws);
   ModuleText text;
   text.label = "step";
+  text.fast = fast;
+  const bool mixed = engine_.options.mixed;
+  text.add("world.h");
+  if (mixed) {
+    text.add_laws(32, laws.laws);
+    text.add("laws of the case", laws.text);
+    text.add("contacts.h");
+  }
   text.add_laws(64, laws.laws);
   text.add("laws of the case", laws.text);
-  for (const char* part : {"world.h", "contacts.h", "surfaces.h", "walls.h", "motion.h", "fold.h"}) text.add(part);
+  for (const char* part : {"contacts.h", "surfaces.h", "walls.h", "motion.h", "fold.h"}) text.add(part);
   m.module = device_->build(text);
-  m.pair_contacts = m.module.kernel("pair_contacts");
+  m.pair_contacts = m.module.kernel(mixed ? "pair_contacts_f32" : "pair_contacts_f64");
   m.wall_contacts = m.module.kernel("wall_contacts");
-  m.sum_contacts = m.module.kernel("sum_contacts");
+  m.sum_contacts = m.module.kernel(mixed ? "sum_contacts_mixed" : "sum_contacts");
   m.move_spheres = m.module.kernel("move_spheres");
   m.move_clumps = m.module.kernel("move_clumps");
   m.drift_spheres = m.module.kernel("drift_spheres");
@@ -220,7 +228,7 @@ void Engine::OnDevice::send_pairs() {
   m.put(m.pair_j, list.j);
   m.put(m.pair_touching, list.touching);
   m.put(m.pair_history, list.history);
-  m.reserve(m.pair_out, kPairValues * entries * sizeof(double));
+  m.reserve(m.pair_out, kPairValues * entries * (engine_.options.mixed ? sizeof(float) : sizeof(double)));
   m.reserve(m.pair_share, entries * sizeof(double));
   if (engine_.options.ledger) m.reserve(m.pair_energy, kEnergies * entries * sizeof(double));
 

@@ -10,7 +10,8 @@
 namespace calx {
 
 struct Engine::OnDevice {
-  OnDevice(std::unique_ptr<Device> device, Engine& engine);
+  /// fast: a * b + c may be contracted, and the bits are the device's own.
+  OnDevice(std::unique_ptr<Device> device, Engine& engine, bool fast);
   ~OnDevice();
   /// First half of a step of verlet; fills the work of gravity of chunks, and says whether lists are stale.
   void drift(double dt);
@@ -29,7 +30,7 @@ struct Engine::OnDevice {
  private:
   struct Numbers;
   struct Memory;
-  void build();
+  void build(bool fast);
   void send_lists();
   void send_shapes();
   void send_particles();

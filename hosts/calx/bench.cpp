@@ -74,7 +74,7 @@ void add_bench_command(CLI::App& app) {
   command->add_option("--warm-up", b->warm_up, "steps before timing (default: 100)")->check(whole_number());
   command->add_option("--at", b->at, "simulate to this time first, untimed, s")->check(zero_or_more());
   command->add_option("--rolling", b->rolling, "rolling friction, 0 for none")->check(zero_or_more());
-  command->add_option("--device", b->device, "cpu, opencl[:i], cuda[:i], or auto");
+  command->add_option("--device", b->device, "cpu, opencl[:i], cuda[:i] or auto");
   command->add_option("--precision", b->precision, "double, or mixed: pair contacts in single precision");
   command->add_option("--set", *set, "override in the case, repeatable: /json/pointer=value");
   command->add_option("--settle", b->settle, "settle the start for this long, s (default: until it rests)")

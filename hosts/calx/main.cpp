@@ -38,7 +38,7 @@ std::pair<std::string, std::string> split_override(const std::string& text) {
 struct CaseFlags {
   std::vector<std::string> set, plugin_path;
   calx::RunOptions run;
-  std::string device = "auto", precision = "double";
+  std::string device = "auto", precision = "double", arithmetic = "exact";
   long long seed = -1;
   bool quiet = false, json = false, no_report = false;
 
@@ -49,6 +49,8 @@ struct CaseFlags {
         ->check(calx::whole_above_zero());
     app.add_option("--device", device, "auto, cpu, opencl[:i] or cuda[:i]");
     app.add_option("--precision", precision, "double, or mixed: pair contacts in single precision");
+    app.add_option("--arithmetic", arithmetic,
+                   "exact, or fast: devices may contract a * b + c, to other last digits than the processor's");
     app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(calx::whole_number());
     app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
   }
@@ -56,6 +58,9 @@ struct CaseFlags {
     if (precision != "double" && precision != "mixed")
       throw calx::Error(calx::Fault::usage, "--precision " + precision + ": expected \"double\" or \"mixed\"");
     run.simulation.device = device;
+    if (arithmetic != "exact" && arithmetic != "fast")
+      throw calx::Error(calx::Fault::usage, "--arithmetic " + arithmetic + ": expected \"exact\" or \"fast\"");
+    run.simulation.fast = arithmetic == "fast";
     run.simulation.mixed = precision == "mixed";
     for (const auto& s : set) run.overrides.push_back(split_override(s));
     if (seed >= 0) run.overrides.emplace_back("/seed", std::to_string(seed));

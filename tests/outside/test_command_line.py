@@ -89,6 +89,7 @@ class CommandLine(CalxTest):
                             (["run", path, "--device", "cuda"], r"device kind cuda needs an NVIDIA driver"),
                             (["run", path, "--device", "gpu"], r"--device gpu: expected auto, cpu, opencl or cuda"),
                             (["run", path, "--precision", "half"], r'--precision half: .*"double"'),
+                            (["run", path, "--arithmetic", "wild"], r'--arithmetic wild: .*"exact" or "fast"'),
                             (["check"], r"check: a case file is needed"),
                             (["bench", "--threads", "-3"], r'--threads: "-3" is not a whole number above 0')):
             with self.subTest(words):
@@ -116,7 +117,7 @@ class CommandLine(CalxTest):
         self.assertAlmostEqual(steps, 0.05 / least, delta=1.5)
         for pattern in (r'Source "pour": 0\.005027 kg, about 60 particles of "ball"',
                         r"Size: 0\.005027 kg, 60 particles, 60 spheres, ", r"Memory: below 1 MB", r"Cost: below 1 s on 3 threads",
-                        r"(?m)^Device: cpu; .*double precision, 3 threads$", r"(?m)^  glass: density 2500, poisson 0\.25, young 1e\+07$",
+                        r"(?m)^Device: cpu; .*double precision, exact arithmetic, 3 threads$", r"(?m)^  glass: density 2500, poisson 0\.25, young 1e\+07$",
                         r"(?m)^  glass-steel: calx\.hertz-mindlin$", r"rolling_friction = 0", r"cup: calx\.box, 10 surface elements",
                         r"calx\.box 1\.\d+\.\d+  sha256 [0-9a-f]{12}  /\S*/calx_box\.so", r"(?m)^  - every value is made up$"):
             self.assertRegex(text, pattern)

@@ -75,7 +75,12 @@ void check_same(const Outcome& a, const Outcome& b) {
 }
 
 /// least: contacts there must be at the end for the scene to mean something.
-void check_scene(const CaseFile& file, int steps, std::uint64_t least = 400) {
+void check_scene(const CaseFile& file, int steps, std::uint64_t least = 400, bool mixed = false) {
+  const auto on = [mixed](const std::string& device) {
+    SimulationOptions o = ::on(device);
+    o.mixed = mixed;
+    return o;
+  };
   Simulation reference(file, on("cpu"));
   advance(reference, steps);
   const Outcome expected = outcome(reference);
@@ -142,6 +147,30 @@ TEST_CASE("EpAM and Hertz-Mindlin on a mesh and a turning rotary valve: the bits
   check_scene(valve(), 1500, 200);
 }
 
+TEST_CASE("mixed precision: the bits of the processor on every device") {
+  check_scene(shaken_clumps("euler"), 350, 400, true);
+  check_scene(valve(), 800, 20, true);
+}
+
+TEST_CASE("fast arithmetic: other last digits, the same motion") {
+  SimulationOptions fast = on("opencl"), exact = on("cpu");
+  fast.fast = true;
+  if (devices().size() < 3) return;
+  Simulation a(sphere_bed("euler"), exact), b(sphere_bed("euler"), fast);
+  CHECK(b.fast());
+  CHECK(!a.fast());
+  advance(a, 200);
+  advance(b, 200);
+  const Particles &p = a.world().particles(), &q = b.world().particles();
+  double off = 0, moved = 0;
+  for (std::size_t k = 0; k < p.count(); ++k) {
+    off = std::max(off, norm(position(p.body[k]) - position(q.body[k])));
+    moved = std::max(moved, norm(velocity(p.body[k])) * 2e-3);
+  }
+  MESSAGE("largest difference " << off << " m of " << moved << " m moved");
+  CHECK(off < 1e-6 * moved);
+}
+
 TEST_CASE("a checkpoint goes on with on another device, to the same bits") {
   const CaseFile file = valve();
   Simulation reference(file, on("cpu"));
@@ -168,10 +197,9 @@ TEST_CASE("what a device cannot do runs on the processor, and says so before the
   const auto messages = sim.take_messages();
   REQUIRE(messages.size() == 1);
   CHECK(messages[0].find("--device host: runs on the cpu") != std::string::npos);
-  SimulationOptions mixed = on("cuda:1");
-  mixed.mixed = true;
-  CHECK(Simulation(sphere_bed("euler"), mixed).device().find("mixed precision is not there on devices") !=
-        std::string::npos);
+  CaseFile resting = sphere_bed("euler");
+  resting.settings.rest.on = true;
+  CHECK(Simulation(resting, on("cuda:1")).device().find("particles at rest (/rest)") != std::string::npos);
 }
 
 TEST_CASE("a source that pours and particles that leave: the bits of the processor on every device") {
