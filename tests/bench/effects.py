@@ -1,10 +1,11 @@
-"""effects.py: what mixed precision or rest changes in the figures of a run, beside what another seed changes; effects calls it.
+"""effects.py: what mixed precision or rest changes in figures, beside what another seed changes; effects calls it.
 
 Each scene (effects_cases/SCENE.json; figures in effects_scenes.py) runs with several seeds, each without and with the feature
-from the same start. Whether the error of the mean difference is taken seed by seed ("paired") or from the scatter of both sides
-("unpaired", Welch) is decided by the scene, not by the result: ways of grains that collide part within milliseconds, so only the
-scenes in PAIRED, whose figures the start decides, are paired. "differs" is a mean difference outside the interval of LEVEL by
-Student's t around 0: one row in a hundred does so by chance. Each run is a line in results/effects.jsonl.
+from the same start. Ways of grains that collide part within milliseconds, so the two runs of a seed differ as two seeds do and
+the error of the mean difference comes from the scatter of both sides ("unpaired", Welch); only the scenes in PAIRED, whose
+figures follow the start, are compared seed by seed. The scene decides, not the result. "differs" is a mean difference outside
+the interval of LEVEL around 0 by Student's t: one row in a hundred does so by chance. "seen from" is half that interval: a
+smaller effect would not show. Each run is a line in results/effects.jsonl; the same run of the same program is taken from there.
 """
 import argparse
 import concurrent.futures
@@ -118,8 +119,9 @@ def sleepers(lines):
     """One line of text about the sleepers in the runs of a scene."""
     def mean(key):
         return 100 * statistics.mean(line["asleep"][key] for line in lines)
-    return (f"{lines[0]['scene']}: {lines[0]['particles']} particles, {lines[0]['steps']} steps; {mean('steps_skipped'):.0f} % of the "
-            f"particle-steps slept through, at most {mean('most'):.0f} % asleep at a time, {mean('at_the_end'):.0f} % at the end")
+    first = lines[0]
+    return (f"{first['scene']}: {first['particles']} particles, {first['steps']} steps; {mean('steps_skipped'):.0f} % of "
+            f"the particle-steps slept through, at most {mean('most'):.0f} % asleep at a time, {mean('at_the_end'):.0f} % at the end")
 
 
 def measure(options, feature):

@@ -37,8 +37,9 @@ class Run:
         return y[k - 1] + (y[k] - y[k - 1]) * (time - t[k - 1]) / (t[k] - t[k - 1])
 
     def mean(self, sensor, column, start, end=math.inf):
-        """Mean of the rows from start to end."""
+        """Mean of the rows from start to end; a negative start counts from the end of the run."""
         rows = self.series(sensor)
+        start += self.summary["time"] if start < 0 else 0
         values = [y for t, y in zip(rows["time_s"], rows[column]) if start < t <= end]
         return sum(values) / len(values)
 
@@ -73,8 +74,7 @@ def lost(run):
 
 def still(run):
     """log10 of the kinetic energy at the end, mean of 0.05 s, over what lifts the bed by a radius of 1.25 mm."""
-    start = run.summary["time"] - 0.05
-    kinetic = sum(run.mean("energy", f"kinetic_{kind}_J", start) for kind in ("translation", "rotation"))
+    kinetic = sum(run.mean("energy", f"kinetic_{kind}_J", -0.05) for kind in ("translation", "rotation"))
     return math.log10(max(kinetic / (run.weight() * 0.00125), 1e-20))
 
 
@@ -135,8 +135,8 @@ KINETIC = ("kinetic energy at rest, log10", "m g r", still, ("precision",))
 
 SCENES = {
     "gas": [
-        ("sum of energies, change", "ppm", lambda run: 1e6 * run.last("energy", "remainder_J") / run.last("energy", "inserted_J"),
-         ()),
+        ("sum of energies, change", "ppm",
+         lambda run: 1e6 * run.last("energy", "remainder_J") / run.last("energy", "inserted_J"), ()),
         ("kinetic energy, mean", "mJ", lambda run: 1e3 * run.mean("energy", "kinetic_translation_J", 0.2), ())],
     "bed": [
         ("bulk density", "kg/m3", lambda run: run.mean("bulk density", "density_kg_m3", 0.5), ()),
@@ -149,7 +149,7 @@ SCENES = {
         ("discharge rate, middle half", "g/s", rate, ()),
         ("retained", "g", last("hopper mass", "mass_kg", 1e3), ()),
         ("angle of the retained wedge", "deg", last("wedge", "angle_deg"), ()),
-        ("load on the floor at the end", "mN", load("floor", "z", 1.2), ()), *ENERGY],
+        ("load on the floor at the end", "mN", load("floor", "z", -0.2), ()), *ENERGY],
     "pile": [
         ("angle of repose", "deg", last("angle", "angle_deg"), ()),
         ("height of the apex", "mm", last("angle", "apex_z_m", 1e3), ()),
@@ -161,8 +161,9 @@ SCENES = {
         ("torque on the drum", "mN m", lambda run: 1e3 * run.mean("drum load", "torque_y_N_m", 0.8), ()),
         ("kinetic energy", "uJ", lambda run: 1e6 * run.mean("energy", "kinetic_translation_J", 0.8), ()), *ENERGY],
     "silo": [
-        *((f"floor, portion {n}", "mN", load("floor", "z", end - 0.1, end), ()) for n, end in ((1, 0.44), (2, 0.89), (3, 1.5))),
-        *((f"side wall, portion {n}", "mN", load("left", "x", end - 0.1, end), ()) for n, end in ((1, 0.44), (2, 0.89), (3, 1.5))),
+        *((f"{name}, portion {n}", "mN", load(part, axis, end - 0.1, end), ())
+          for name, part, axis in (("floor", "floor", "z"), ("side wall", "left", "x"))
+          for n, end in ((1, 0.44), (2, 0.89), (3, 1.5))),
         ("all walls, vertical", "mN", lambda run: load("left", "z", 1.4)(run) + load("walls", "z", 1.4)(run), ()),
         ("bulk density", "kg/m3", lambda run: run.mean("bulk density", "density_kg_m3", 1.4), ()),
         ("coordination number", "1", lambda run: run.mean("coordination", "coordination_1", 1.4), ()),
