@@ -4,8 +4,8 @@ Each scene (effects_cases/SCENE.json; figures in effects_scenes.py) runs with se
 from the same start. Ways of grains that collide part within milliseconds, so the two runs of a seed differ as two seeds do and
 the error of the mean difference comes from the scatter of both sides ("unpaired", Welch); only the scenes in PAIRED, whose
 figures follow the start, are compared seed by seed. The scene decides, not the result. "differs" is a mean difference outside
-the interval of LEVEL around 0 by Student's t: one row in a hundred does so by chance. "seen from" is half that interval: a
-smaller effect would not show. Each run is a line in results/effects.jsonl; the same run of the same program is taken from there.
+the interval of LEVEL around 0 by Student's t: one row in a hundred does so by chance. "seen from" is half that interval:
+less would not show. Each run is a line in results/effects.jsonl; the same run of the same program is taken from there.
 """
 import argparse
 import concurrent.futures
@@ -66,15 +66,26 @@ def compare(off, on, paired):
     return row
 
 
+def identity(options, scene, seed, feature):
+    """What makes two runs the same. feature: empty for a run without."""
+    digest = hashlib.sha256((options.cases / f"{scene}.json").read_bytes()).hexdigest()
+    return {"scene": scene, "seed": seed, "feature": feature, "set": options.set, "program": options.version,
+            "case_sha256": digest}
+
+
+def recorded(options, key):
+    """The line of such a run in the results, or None."""
+    return next((line for line in options.known if all(line.get(name) == value for name, value in key.items())), None)
+
+
 def simulate(options, scene, seed, feature):
-    """One run, or the line of an equal one in the results. feature: empty for a run without."""
+    """One run, or the line of an equal one in the results."""
     case = options.cases / f"{scene}.json"
     changes = effects_scenes.FEATURES[feature] if feature else []
-    key = {"scene": scene, "seed": seed, "feature": feature, "set": options.set, "program": options.version,
-           "case_sha256": hashlib.sha256(case.read_bytes()).hexdigest()}
-    for line in options.known:
-        if all(line.get(name) == value for name, value in key.items()):
-            return line
+    key = identity(options, scene, seed, feature)
+    line = recorded(options, key)
+    if line:
+        return line
     with tempfile.TemporaryDirectory(prefix="calx_effects_") as folder:
         out = pathlib.Path(folder) / "out"
         command = [options.calx, "run", case, "-o", out, "--seed", seed, "--threads", 1, "--no-report", "--quiet", *changes]
@@ -85,6 +96,8 @@ def simulate(options, scene, seed, feature):
             sys.exit(f"{' '.join(str(word) for word in command)}\n{(done.stdout + done.stderr)[-2000:]}")
         run = effects_scenes.Run(out)
         figures = {name: figure(run) for name, _, figure, _ in effects_scenes.SCENES[scene]}
+        # JSON has no NaN.
+        figures = {name: None if math.isnan(value) else value for name, value in figures.items()}
         line = {"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), **key,
                 "git": run.summary["provenance"]["git"], "particles": run.summary["mass"]["inserted_particles"],
                 "steps": run.summary["steps"], "figures": figures}
@@ -105,12 +118,12 @@ def number(value):
 
 def table(rows, feature):
     """Markdown."""
-    head = ["scene", "figure", "unit", f"without {feature}" if feature == "rest" else "double", "seeds' sd",
+    head = ["scene", "figure", "unit", "seeds", f"without {feature}" if feature == "rest" else "double", "seeds' sd",
             "with rest" if feature == "rest" else "mixed", "difference", "its error", "seen from", "verdict"]
     cells = [head, ["-" * len(word) for word in head]]
     for row in rows:
-        cells.append([row["scene"], row["figure"], row["unit"], number(row["off"]), number(row["sd_off"]), number(row["on"]),
-                      number(row["difference"]), number(row["error"]), number(row["limit"]), row["verdict"]])
+        cells.append([row["scene"], row["figure"], row["unit"], str(row["seeds"]),
+                      *(number(row[key]) for key in ("off", "sd_off", "on", "difference", "error", "limit")), row["verdict"]])
     widths = [max(len(line[k]) for line in cells) for k in range(len(head))]
     return "\n".join("| " + " | ".join(cell.ljust(width) for cell, width in zip(line, widths)) + " |" for line in cells)
 
@@ -120,28 +133,34 @@ def sleepers(lines):
     def mean(key):
         return 100 * statistics.mean(line["asleep"][key] for line in lines)
     first = lines[0]
-    return (f"{first['scene']}: {first['particles']} particles, {first['steps']} steps; {mean('steps_skipped'):.0f} % of "
-            f"the particle-steps slept through, at most {mean('most'):.0f} % asleep at a time, {mean('at_the_end'):.0f} % at the end")
+    return (f"{first['scene']}: {first['particles']} particles, {first['steps']} steps; {mean('steps_skipped'):.0f} % of the "
+            f"particle-steps slept through, most asleep at a time {mean('most'):.0f} %, at the end {mean('at_the_end'):.0f} %")
 
 
 def measure(options, feature):
     """Runs what is missing; rows of the table, in order of scenes and figures, and the lines with the feature by scene."""
     scenes = [name for name in SCENES[feature] if name in (options.scenes or SCENES[feature])]
-    jobs = [(scene, seed, kind) for scene in scenes for seed in range(1, options.seeds + 1) for kind in ("", feature)]
+    seeds = {scene: [seed for seed in range(1, options.seeds + 1) if not options.recorded or
+                     all(recorded(options, identity(options, scene, seed, kind)) for kind in ("", feature))]
+             for scene in scenes}
+    scenes = [scene for scene in scenes if len(seeds[scene]) >= 2]
+    jobs = [(scene, seed, kind) for scene in scenes for seed in seeds[scene] for kind in ("", feature)]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         lines = dict(zip(jobs, pool.map(lambda job: simulate(options, *job), jobs)))
     rows, with_feature = [], {}
     for scene in scenes:
-        off, on = ([lines[scene, seed, kind] for seed in range(1, options.seeds + 1)] for kind in ("", feature))
+        off, on = ([lines[scene, seed, kind] for seed in seeds[scene]] for kind in ("", feature))
         with_feature[scene] = on
         for name, unit, _, shown in effects_scenes.SCENES[scene]:
             if shown and feature not in shown:
                 continue
             pairs = [(a["figures"][name], b["figures"][name]) for a, b in zip(off, on)]
-            # A flank that the sensor finds too short to fit has no angle.
-            pairs = [pair for pair in pairs if not any(math.isnan(value) for value in pair)]
+            # A flank that the sensor finds too short to fit has no angle; such a pair is left out.
+            pairs = [pair for pair in pairs if None not in pair]
             if len(pairs) >= 2:
                 rows.append({"scene": scene, "figure": name, "unit": unit, **compare(*zip(*pairs), scene in PAIRED)})
+            else:
+                print(f"left out: {scene}, {name}: {len(pairs)} pairs of runs have it", file=sys.stderr)
     return rows, with_feature
 
 
@@ -156,6 +175,7 @@ def main(words=None):
     parser.add_argument("--cases", type=pathlib.Path, default=HERE / "effects_cases")
     parser.add_argument("--results", type=pathlib.Path, default=HERE / "results/effects.jsonl")
     parser.add_argument("--json", action="store_true", help="one JSON line a row instead of the table")
+    parser.add_argument("--recorded", action="store_true", help="run nothing: only what the results hold, up to --seeds")
     parser.add_argument("--dry", action="store_true", help="record nothing, take nothing from earlier runs, draw nothing")
     options = parser.parse_args(words)
     if options.seeds < 2:
@@ -173,7 +193,7 @@ def main(words=None):
         return
     print(table(rows, options.feature))
     differ = sum(row["verdict"] == "differs" for row in rows)
-    print(f"\n{options.seeds} seeds; {differ} of {len(rows)} rows differ, {(1 - LEVEL) * len(rows):.1f} would by chance")
+    print(f"\n{differ} of {len(rows)} rows differ, {(1 - LEVEL) * len(rows):.1f} would by chance")
     if options.feature == "rest":
         for lines in with_feature.values():
             print(sleepers(lines))

@@ -10,8 +10,8 @@ def plot(rows, feature):
     middle, scale = LEFT + WIDTH / 2, WIDTH / (2 * REACH)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{LEFT + WIDTH + 20}" height="{height}" '
            'font-family="sans-serif" font-size="12">', '<rect width="100%" height="100%" fill="white"/>',
-           f'<text x="10" y="{ROW}" font-weight="bold">{feature}: mean difference and its 99 % interval, in standard deviations '
-           'of the seeds</text>',
+           f'<text x="10" y="{ROW}" font-weight="bold">{feature}: mean difference and its 99 % interval, in standard '
+           'deviations of the seeds</text>',
            f'<rect x="{middle - scale:.1f}" y="{1.5 * ROW}" width="{2 * scale:.1f}" height="{ROW * len(rows) + 6}" '
            'fill="#e8e8e8"/>']
 

@@ -116,7 +116,7 @@ def cycle(number):
 def torque(run):
     """Mean size of the torque about the rotor's axis while it turns to and fro, N m."""
     rows = run.series("rotor load")
-    values = [abs(m) for t, m in zip(rows["time_s"], rows["torque_y_N_m"]) if 0.36 < t <= 2.0]
+    values = [abs(m) for t, m in zip(rows["time_s"], rows["torque_y_N_m"]) if 0.36 < t <= 3.3]
     return sum(values) / len(values)
 
 
@@ -175,8 +175,8 @@ SCENES = {
         ("angle of the pile", "deg", last("angle", "angle_deg"), ()),
         ("centre of the pile, x", "mm", last("canister mass", "centre_x_m", 1e3), ()),
         ("centre of the pile, z over the floor", "mm", lambda run: 1e3 * (run.last("canister mass", "centre_z_m") - 0.405), ()),
-        ("floor", "mN", load("floor", "z", 2.25), ()),
-        ("right wall, across", "mN", load("right", "x", 2.25), ()),
-        ("all walls, vertical", "mN", lambda run: load("right", "z", 2.25)(run) + load("walls", "z", 2.25)(run), ()),
+        ("floor", "mN", load("floor", "z", -0.15), ()),
+        ("right wall, across", "mN", load("right", "x", -0.15), ()),
+        ("all walls, vertical", "mN", lambda run: load("right", "z", -0.15)(run) + load("walls", "z", -0.15)(run), ()),
         ("torque on the rotor, mean size", "mN m", lambda run: 1e3 * torque(run), ()), *ENERGY],
 }

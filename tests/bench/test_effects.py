@@ -85,8 +85,8 @@ class StatisticsTest(unittest.TestCase):
                 {"scene": "bed", "figure": "moved", "unit": "g", **moved}]
         lines = effects.table(rows, "rest").splitlines()
         cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-        self.assertEqual(cells[2][:4] + cells[2][-1:], ["bed", "a < b", "mm", "1.5", "within scatter"])
-        self.assertEqual((cells[3][5], cells[3][6], cells[3][-1]), ("9.01", "8", "differs"))
+        self.assertEqual(cells[2][:5] + cells[2][-1:], ["bed", "a < b", "mm", "3", "1.5", "within scatter"])
+        self.assertEqual((cells[3][6], cells[3][7], cells[3][-1]), ("9.01", "8", "differs"))
         self.assertEqual({len(line) for line in lines}, {len(lines[0])})
         picture = xml.dom.minidom.parseString(effects_plot.plot(rows, "rest"))
         self.assertEqual(len(picture.getElementsByTagName("circle")), 2)
@@ -136,6 +136,7 @@ class RunsTest(unittest.TestCase):
                 self.assertTrue(0.1 < asleep["steps_skipped"] < asleep["at_the_end"] <= asleep["most"] <= 1, asleep)
             # What has been run is taken from the file, and gives the same rows.
             self.assertEqual(self.rows("rest", "bed", *words), rows)
+            self.assertEqual(self.rows("rest", "bed", "--recorded", "--seeds", "9", *words), rows)
             self.assertEqual(len(results.read_text().splitlines()), 4)
         floor = rows["load on the floor, of the weight"]
         self.assertAlmostEqual(floor["off"], 1, delta=0.01)
