@@ -175,7 +175,8 @@ def main(words=None):
     parser.add_argument("--cases", type=pathlib.Path, default=HERE / "effects_cases")
     parser.add_argument("--results", type=pathlib.Path, default=HERE / "results/effects.jsonl")
     parser.add_argument("--json", action="store_true", help="one JSON line a row instead of the table")
-    parser.add_argument("--recorded", action="store_true", help="run nothing: only what the results hold, up to --seeds")
+    parser.add_argument("--recorded", action="store_true", help="run nothing: what the results hold, up to --seeds, of the program "
+                        "that wrote their last line")
     parser.add_argument("--dry", action="store_true", help="record nothing, take nothing from earlier runs, draw nothing")
     options = parser.parse_args(words)
     if options.seeds < 2:
@@ -187,6 +188,8 @@ def main(words=None):
     options.known = []
     if not options.dry and options.results.exists():
         options.known = [json.loads(line) for line in options.results.read_text(encoding="ascii").splitlines()]
+    if options.recorded and options.known:
+        options.version = options.known[-1]["program"]
     rows, with_feature = measure(options, options.feature)
     if options.json:
         print("\n".join(json.dumps(row) for row in rows))
