@@ -32,7 +32,7 @@ SCENES = {"precision": ["gas", "bed", "hopper", "pile", "drum", "silo", "caniste
 def student(freedom, level=LEVEL):
     """t with which |T| <= t has the probability level, by Simpson's rule over x = t / sqrt(freedom) = tan(angle)."""
     def below(t):
-        end, n = math.atan(t / math.sqrt(freedom)), 400
+        end, n = math.atan(t / math.sqrt(freedom)), 100
         h = end / n
         weights = [1, *([4, 2] * (n // 2))[:n - 1], 1]
         area = h / 3 * sum(w * math.cos(k * h) ** (freedom - 1) for k, w in enumerate(weights))
@@ -42,7 +42,7 @@ def student(freedom, level=LEVEL):
     low, high = 0.0, 1.0
     while below(high) < level and high < 1e6:
         high *= 2
-    for _ in range(60):
+    for _ in range(30):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if below(middle) < level else (low, middle)
     return 0.5 * (low + high)
@@ -175,8 +175,8 @@ def main(words=None):
     parser.add_argument("--cases", type=pathlib.Path, default=HERE / "effects_cases")
     parser.add_argument("--results", type=pathlib.Path, default=HERE / "results/effects.jsonl")
     parser.add_argument("--json", action="store_true", help="one JSON line a row instead of the table")
-    parser.add_argument("--recorded", action="store_true", help="run nothing: what the results hold, up to --seeds, of the program "
-                        "that wrote their last line")
+    parser.add_argument("--recorded", action="store_true",
+                        help="run nothing: what the results hold of the program that wrote their last line, up to --seeds")
     parser.add_argument("--dry", action="store_true", help="record nothing, take nothing from earlier runs, draw nothing")
     options = parser.parse_args(words)
     if options.seeds < 2:
