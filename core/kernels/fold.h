@@ -25,6 +25,7 @@ typedef struct chunk {
 #define SUM_ROTATION 10u
 #define SUM_GRAVITY 11u
 #define SUM_GRAVITY_WORK 12u
+#define SUM_FORCE_WORK 13u
 #define SUMS 14u /* then six for each part: load, N and N m about the pivot */
 
 /* Number of the chunk that span k belongs to; firsts rise. */
@@ -167,8 +168,11 @@ KERNEL(fold_chunks, step_numbers n, u32 halves, u32 sphere_spans, u32 particle_s
     sums[SUM_WALL_WORK] += span[SUM_WALL_WORK];
     for (u32 k = SUMS; k < width; ++k) sums[k] += span[k];
   }
-  if (!n.ledger) return;
   const u32 particle_end = last ? particle_spans : chunks[c + 1].first_particle_span;
+  if (n.forces)
+    for (u32 s = chunks[c].first_particle_span; s < particle_end; ++s)
+      sums[SUM_FORCE_WORK] += particles[(u64)s * PARTICLE_ENERGIES + 8u];
+  if (!n.ledger) return;
   double px = 0.0, py = 0.0, pz = 0.0, before = 0.0, after = 0.0;
   for (u32 s = chunks[c].first_particle_span; s < particle_end; ++s) {
     GLOBAL const double* e = particles + (u64)s * PARTICLE_ENERGIES;

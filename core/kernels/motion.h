@@ -6,10 +6,6 @@
 #ifndef CALX_MOTION_H
 #define CALX_MOTION_H
 
-typedef struct wrench {
-  double fx, fy, fz, tx, ty, tz; /* N, N m */
-} wrench;
-
 /* Adds what the own chunk's entries do to sphere s, then, by the second, what entries of chunks before it do.
  * in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
  * chunks before it up to in_first[s + 1]. */
@@ -101,8 +97,8 @@ KERNEL(sum_contacts_mixed, SUM_ARGUMENTS(float)) {
 }
 
 /* Energies of a particle, J, in columns `particles` apart: translation and rotation before the kick, gravity before;
- * translation and rotation after; then its momentum after, kg m/s. */
-#define PARTICLE_ENERGIES 8u
+ * translation and rotation after; its momentum after, kg m/s; work of forces on single particles. */
+#define PARTICLE_ENERGIES 9u
 
 FN double translation_of(GLOBAL const record* b) {
   const vec3 v = velocity_of(b);
@@ -111,6 +107,25 @@ FN double translation_of(GLOBAL const record* b) {
 FN double rotation_of(GLOBAL const record* b) {
   const vec3 w = spin_of(b);
   return 0.25 * dot3_f64(w, w) / b->aux;
+}
+
+/* Sums of a particle with the forces on single particles, whose work is booked at the mean velocity of the kick. */
+FN wrench with_forces(wrench w, GLOBAL const wrench* added, u32 p, GLOBAL const record* b, GLOBAL double* energy,
+                      step_numbers n) {
+  if (!n.forces) return w;
+  const wrench add = added[p];
+  w.fx += add.fx;
+  w.fy += add.fy;
+  w.fz += add.fz;
+  w.tx += add.tx;
+  w.ty += add.ty;
+  w.tz += add.tz;
+  const vec3 pull = add3_f64(scale3_f64(1.0 / b->m, make3_f64(w.fx, w.fy, w.fz)),
+                             make3_f64(n.gravity_x, n.gravity_y, n.gravity_z));
+  const vec3 v = add3_f64(velocity_of(b), scale3_f64(0.5 * n.dt, pull));
+  energy[8 * (u64)n.particles + p] =
+      (dot3_f64(make3_f64(add.fx, add.fy, add.fz), v) + dot3_f64(make3_f64(add.tx, add.ty, add.tz), spin_of(b))) * n.dt;
+  return w;
 }
 
 FN void kick_and_drift(GLOBAL record* b, double fx, double fy, double fz, step_numbers n) {
@@ -150,22 +165,23 @@ FN void guard_margin(GLOBAL const record* s, GLOBAL const vec3* listed, double m
 
 /* Particles of one sphere each. */
 KERNEL(move_spheres, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL const wrench* RESTRICT sums,
+       GLOBAL const wrench* RESTRICT added,
        GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
        GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
   if (p >= n.particles) return;
   GLOBAL record* b = body + p;
-  GLOBAL const wrench* w = sums + p;
+  const wrench w = with_forces(sums[p], added, p, b, energy, n);
   const u64 stride = n.particles;
   if (n.ledger) {
     book_before(energy, stride, p, b, n);
     energy[stride + p] = rotation_of(b);
   }
-  kick_and_drift(b, w->fx, w->fy, w->fz, n);
+  kick_and_drift(b, w.fx, w.fy, w.fz, n);
   const double turning = n.dt * b->aux;
-  b->wx = b->wx + turning * w->tx;
-  b->wy = b->wy + turning * w->ty;
-  b->wz = b->wz + turning * w->tz;
+  b->wx = b->wx + turning * w.tx;
+  b->wy = b->wy + turning * w.ty;
+  b->wz = b->wz + turning * w.tz;
   if (n.ledger) {
     book_after(energy, stride, p, b);
     energy[4 * stride + p] = rotation_of(b);
@@ -265,13 +281,14 @@ FN void set_spin(GLOBAL record* b, vec3 w) {
  * moments, kg m^2; arms: of spheres, m, principal frame. */
 KERNEL(move_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record* RESTRICT spheres,
        GLOBAL quat* RESTRICT turns, GLOBAL const vec3* RESTRICT inertia, GLOBAL const u32* RESTRICT first_sphere,
-       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sums, GLOBAL const vec3* RESTRICT listed,
+       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sums,
+       GLOBAL const wrench* RESTRICT added, GLOBAL const vec3* RESTRICT listed,
        GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
   if (p >= n.particles) return;
   GLOBAL record* b = body + p;
   const u32 first = first_sphere[p], last = first_sphere[p + 1];
-  const wrench w = clump_wrench(b, spheres, sums, first, last);
+  const wrench w = with_forces(clump_wrench(b, spheres, sums, first, last), added, p, b, energy, n);
   const u64 stride = n.particles;
   if (n.ledger) book_before(energy, stride, p, b, n);
   kick_and_drift(b, w.fx, w.fy, w.fz, n);
@@ -337,7 +354,8 @@ KERNEL(drift_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record
 /* Second half: kick by the forces of this step. sphere_sums: of spheres; sums: of particles, kept for the next step. */
 KERNEL(kick_particles, step_numbers n, u32 clumps, GLOBAL record* RESTRICT body, GLOBAL record* RESTRICT spheres,
        GLOBAL const quat* RESTRICT turns, GLOBAL const vec3* RESTRICT inertia, GLOBAL const u32* RESTRICT first_sphere,
-       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sphere_sums, GLOBAL wrench* RESTRICT sums,
+       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sphere_sums,
+       GLOBAL const wrench* RESTRICT added, GLOBAL wrench* RESTRICT sums,
        GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
        GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
@@ -346,6 +364,7 @@ KERNEL(kick_particles, step_numbers n, u32 clumps, GLOBAL record* RESTRICT body,
   const u32 first = clumps ? first_sphere[p] : p, last = clumps ? first_sphere[p + 1] : p + 1;
   wrench w = sphere_sums[p];
   if (clumps) w = clump_wrench(b, spheres, sphere_sums, first, last);
+  w = with_forces(w, added, p, b, energy, n);
   sums[p] = w;
   const double half_step = 0.5 * n.dt, inverse = 1.0 / b->m;
   b->vx = b->vx + half_step * (inverse * w.fx + n.gravity_x);
@@ -366,7 +385,7 @@ KERNEL(kick_particles, step_numbers n, u32 clumps, GLOBAL record* RESTRICT body,
     const vec3 v = velocity_of(b), i = inertia[p], turn = rotate3(conjugate(q), spin_of(b));
     const double translation = 0.5 * b->m * dot3_f64(v, v);
     const double all = translation + 0.5 * (i.x * turn.x * turn.x + i.y * turn.y * turn.y + i.z * turn.z * turn.z);
-    for (u32 k = 0; k < PARTICLE_ENERGIES; ++k) energy[k * stride + p] = 0.0;
+    for (u32 k = 0; k < 8u; ++k) energy[k * stride + p] = 0.0;
     energy[2 * stride + p] = b->m * (n.gravity_x * b->x + n.gravity_y * b->y + n.gravity_z * b->z);
     energy[3 * stride + p] = translation;
     energy[4 * stride + p] = all - translation;

@@ -20,7 +20,7 @@ typedef struct quat {
 
 /* Numbers of a step. */
 typedef struct step_numbers {
-  double dt;                              /* s */
+  double dt, time;                              /* s */
   double gravity_x, gravity_y, gravity_z; /* m/s^2 */
   double low_x, low_y, low_z;             /* m, of the domain */
   double high_x, high_y, high_z;
@@ -29,12 +29,18 @@ typedef struct step_numbers {
   u32 spheres, particles, entries, wall_rows, chunks, parts;
   u32 materials, columns; /* columns of history */
   u32 ledger;             /* energies are kept */
+  u32 forces;             /* there are forces on single particles */
+  u32 spare;
 } step_numbers;
 
 /* Places of the flags that a step raises. */
 #define FLAG_STALE 0u
 #define FLAG_GUARD 1u       /* a number that is not finite, or a particle outside */
 #define FLAG_MISSING_LAW 2u /* 1 + number of the material pair */
+
+typedef struct wrench {
+  double fx, fy, fz, tx, ty, tz; /* N, N m */
+} wrench;
 
 #define position_of(b) make3_f64((b)->x, (b)->y, (b)->z)
 #define velocity_of(b) make3_f64((b)->vx, (b)->vy, (b)->vz)

@@ -322,7 +322,7 @@ GuardReport Engine::finish(double t, double dt) {
   for (auto& r : results_) {
     r.energy = {};
     r.wall_work = {};
-    r.force_work = 0;
+    r.force_work = {};
     r.kinetic_translation = r.kinetic_rotation = r.gravity = r.gravity_work = {};
     r.largest_overlap = 0;
     r.touching = 0;
@@ -331,7 +331,7 @@ GuardReport Engine::finish(double t, double dt) {
   }
   double contacts_done = start;
   if (device_)
-    device_->step(dt);
+    device_->step(t, dt);
   else
     step_on_host(t, dt, contacts_done);
   times_.contacts += contacts_done - start;
@@ -351,7 +351,7 @@ GuardReport Engine::finish(double t, double dt) {
     energy_.damping += r.energy.total.damping;
     energy_.plastic += r.energy.total.plastic;
     energy_.wall_work += r.wall_work.total;
-    energy_.force_work += r.force_work;
+    energy_.force_work += r.force_work.closed();
     energy_.gravity_work += r.gravity_work.closed();
     touching_ += r.touching;
     stale_ |= r.stale;
@@ -399,7 +399,8 @@ std::vector<std::string> Engine::device_obstacles() const {
   std::vector<std::string> reasons;
   for (const std::string& law : laws_without_text(laws))
     reasons.push_back("law \"" + law + "\" has no law text, only native code");
-  if (!forces.empty()) reasons.push_back("particle forces (/forces) have native code only");
+  for (const std::string& force : forces_without_text(forces))
+    reasons.push_back("force \"" + force + "\" has no text, only native code");
   if (options.rest.on) reasons.push_back("particles at rest (/rest) are not there on devices");
   return reasons;
 }

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "calx/particle_force.h"
+#include "compute/force_text.hpp"
 #include "compute/law_list.hpp"
 #include "geometry/geometry.hpp"
 #include "motion/motion.hpp"
@@ -37,11 +37,6 @@ struct EnginePart {
   bool moves = false;
   Pose pose;           // at the instant of the contacts
   Vec3 force, torque;  // N, N m about the pivot, by particles on the part, of the last step
-};
-
-struct EngineForce {
-  const calx_particle_force* table = nullptr;
-  const calx_instance* instance = nullptr;
 };
 
 /// When particles that no longer move are left out; see rest.hpp.
@@ -89,7 +84,7 @@ class Engine {
   ~Engine();
   Particles particles;
   std::vector<EnginePart> parts;
-  std::vector<EngineForce> forces;
+  std::vector<ParticleForce> forces;
   EngineOptions options;
   /// Laws of the ordered material pair (a, b) at [a * material_count + b]; null where the case gives none.
   std::vector<const LawList*> laws;

@@ -103,7 +103,7 @@ struct Engine::Worker {
 struct alignas(64) Engine::ChunkResult {
   SpanSum<EnergySums> energy;                                                    // of contacts
   SpanSum<double> wall_work;                                                     // J
-  double force_work = 0;                                                         // J
+  SpanSum<double> force_work;                                                    // J
   SpanSum<double> kinetic_translation, kinetic_rotation, gravity, gravity_work;  // J
   double largest_overlap = 0;
   std::uint32_t overlap_i = 0, overlap_j = 0;  // spheres; j = ~part for a wall

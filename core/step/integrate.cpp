@@ -156,7 +156,7 @@ void Engine::force_pass(std::size_t c, Worker& w, double t, double dt) {
     if (rest_ && rest_->asleep[chunk.first_particle + k]) continue;
     // The mean velocity of the kick; the spin's own change is left out, for such forces seldom turn anything.
     const Vec3 v = velocity(b) + 0.5 * dt * ((1 / b.m) * force_of(sum) + options.gravity);
-    results_[c].force_work += (dot(force_of(add), v) + dot(torque_of(add), spin(b))) * dt;
+    results_[c].force_work.add(k / kSpan, (dot(force_of(add), v) + dot(torque_of(add), spin(b))) * dt);
   }
 }
 

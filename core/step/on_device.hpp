@@ -16,7 +16,7 @@ struct Engine::OnDevice {
   /// First half of a step of verlet; fills the work of gravity of chunks, and says whether lists are stale.
   void drift(double dt);
   /// Contacts at the poses of the parts, sums and integration; fills the engine's results of chunks.
-  void step(double dt);
+  void step(double t, double dt);
   /// Brings particles and history to the host, once for each step at most.
   void fetch();
   /// The host's particles and lists count from now on; they travel before the next step.
@@ -41,7 +41,7 @@ struct Engine::OnDevice {
   void take_results();
   void launch_integration(const Numbers& n);
   std::size_t result_width() const { return kSums + 6 * engine_.parts.size(); }
-  Numbers numbers(double dt) const;
+  Numbers numbers(double t, double dt) const;
 
   /// Numbers of a chunk before the loads on parts; see fold.h.
   static constexpr std::size_t kSums = 14;

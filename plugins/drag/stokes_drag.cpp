@@ -1,11 +1,23 @@
 // stokes_drag.cpp: drag of a fluid that moves uniformly and does not feel the particles, calx.stokes-drag.
 // A few operations per particle and step; + - * / and sqrt only, so every machine gives the same bits.
 #include <calx/plugin.hpp>
-#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#define CALX_BITS 64
+#include <calx/law/prelude.h>
+#include "stokes_drag.law.h"
+#include <calx/law/force_native.h>
+CALX_FORCE_BATCH(stokes_drag)
 
 namespace {
 
-const double pi = 3.14159265358979323846;
+const char source[] = {
+#include "stokes_drag.law.h.inc"
+};
+const char sha256[] =
+#include "stokes_drag.law.h.sha256.inc"
+    ;
 
 const calx_field fields[] = {
     {"viscosity", "Pa s", "dynamic viscosity of the fluid; preset: air at 20 degrees C", 0, 1e6, 1.81e-5, 0, 0},
@@ -16,59 +28,50 @@ const calx_field fields[] = {
     {"fluid_velocity_y", "m/s", "velocity of the fluid, y", -1e5, 1e5, 0, CALX_VEC(1), 0},
     {"fluid_velocity_z", "m/s", "velocity of the fluid, z", -1e5, 1e5, 0, CALX_VEC(1), 0}};
 
-// Re^0.687 as Re^(1/2 + 1/8 + 1/16 - 1/2048) by square roots: the exponent is 0.687012, and below Re = 1e5 the power is
-// off by less than 2e-4, against some 5 % of the correlation itself.
-double power_0687(double re) {
-  const double half = std::sqrt(re), eighth = std::sqrt(std::sqrt(half)), sixteenth = std::sqrt(eighth);
-  double small = sixteenth;
-  for (int k = 0; k < 7; ++k) small = std::sqrt(small);
-  return half * eighth * sixteenth / small;
-}
-
 class StokesDrag : public calx::Instance {
  public:
   static const calx_descriptor descriptor;
 
-  StokesDrag(const calx_host*, const calx_config& c)
-      : viscosity_(calx::parameter(descriptor, c, "viscosity")),
-        density_(calx::parameter(descriptor, c, "fluid_density")),
-        ux_(calx::parameter(descriptor, c, "fluid_velocity_x")),
-        uy_(calx::parameter(descriptor, c, "fluid_velocity_y")),
-        uz_(calx::parameter(descriptor, c, "fluid_velocity_z")),
-        corrected_(calx::parameter(descriptor, c, "correction") > 0.5) {
-    if (corrected_ && !(viscosity_ > 0))
+  StokesDrag(const calx_host*, const calx_config& c) {
+    row_.viscosity = calx::parameter(descriptor, c, "viscosity");
+    row_.corrected = calx::parameter(descriptor, c, "correction");
+    row_.density = calx::parameter(descriptor, c, "fluid_density");
+    row_.ux = calx::parameter(descriptor, c, "fluid_velocity_x");
+    row_.uy = calx::parameter(descriptor, c, "fluid_velocity_y");
+    row_.uz = calx::parameter(descriptor, c, "fluid_velocity_z");
+    if (row_.corrected > 0.5 && !(row_.viscosity > 0))
       throw calx::ConfigError(
           "viscosity: 0 Pa s gives no Reynolds number; with \"schiller-naumann\" it must be positive");
   }
 
   const void* get_interface(const char* id) const override {
-    static const calx_particle_force table = {sizeof(calx_particle_force), CALX_ABI_DRAFT, &eval};
-    return std::strcmp(id, CALX_PARTICLE_FORCE) == 0 ? &table : 0;
+    static const calx_particle_force table = {sizeof(calx_particle_force),
+                                              CALX_ABI_DRAFT,
+                                              &eval,
+                                              1,
+                                              kRow,
+                                              stokes_drag_row_fields,
+                                              "stokes_drag",
+                                              source,
+                                              sizeof source,
+                                              sha256,
+                                              &numbers};
+    return std::strcmp(id, CALX_PARTICLE_FORCE) == 0 ? &table : nullptr;
   }
 
  private:
-  // Measured over Stokes drag: 1 + 0.15 Re^0.687 (Schiller and Naumann 1933), and beyond its end near Re = 1000 the
-  // constant drag coefficient 0.44 of a sphere, 0.44 Re / 24.
-  double factor(double radius, double speed) const {
-    const double re = 2 * radius * density_ * speed / viscosity_;
-    if (!(re > 0)) return 1;
-    const double naumann = 1 + 0.15 * power_0687(re), newton = 0.44 / 24 * re;
-    return naumann > newton ? naumann : newton;
+  static const uint32_t kRow = offsetof(stokes_drag_row_f64, calx_unused) / sizeof(double);
+  static const double* row_of(const calx_instance* self) {
+    return &static_cast<const StokesDrag*>(self)->row_.viscosity;
   }
-  static void CALX_CALL eval(const calx_instance* instance, const calx_particle_block* b) noexcept {
-    const StokesDrag& self = *static_cast<const StokesDrag*>(instance);
-    for (uint32_t k = 0; k < b->count; ++k) {
-      const double vx = b->vx[k] - self.ux_, vy = b->vy[k] - self.uy_, vz = b->vz[k] - self.uz_;
-      double c = 6 * pi * self.viscosity_ * b->radius[k];
-      if (self.corrected_) c *= self.factor(b->radius[k], std::sqrt(vx * vx + vy * vy + vz * vz));
-      b->fx[k] -= c * vx;
-      b->fy[k] -= c * vy;
-      b->fz[k] -= c * vz;
-    }
+  static void CALX_CALL eval(const calx_instance* self, const calx_particle_block* block) noexcept {
+    stokes_drag_batch(row_of(self), block);
+  }
+  static void CALX_CALL numbers(const calx_instance* self, double* row) noexcept {
+    std::memcpy(row, row_of(self), kRow * sizeof *row);
   }
 
-  double viscosity_, density_, ux_, uy_, uz_;
-  bool corrected_;
+  stokes_drag_row_f64 row_;
 };
 
 const calx_descriptor StokesDrag::descriptor = {

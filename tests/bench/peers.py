@@ -92,7 +92,7 @@ class Job:
 
 def rounds(jobs, options, number):
     """Runs the jobs number times, interleaved, and keeps them in options.done. A job that its code refuses is left out, with the reason on stderr."""
-    options.done.append(jobs)
+    options.__dict__.setdefault("done", []).append(jobs)
     alive = list(jobs)
     for n in range(number):
         for job in alive[n % max(1, len(alive)):] + alive[:n % max(1, len(alive))]:

@@ -126,3 +126,18 @@ typedef struct CALX_ID(calx_wrench) {
       CALX_UNUSED const CALX_ID(calx_contact) * c, CALX_UNUSED const CALX_ID(law##_pair) * p,        \
       CALX_UNUSED const CALX_ID(law##_prop) * pi, CALX_UNUSED const CALX_ID(law##_prop) * pj,        \
       CALX_UNUSED CALX_ID(law##_state) * s, CALX_UNUSED CALX_ID(calx_wrench) * out)
+
+/* A force on single particles, in the same dialect: one list (SYMBOL_row_LIST) and one body, CALX_FORCE_EVAL(SYMBOL). */
+typedef struct CALX_ID(calx_body) {
+  real x, y, z;      /* m, centre of mass, world frame */
+  real vx, vy, vz;   /* m/s */
+  real wx, wy, wz;   /* rad/s */
+  real mass, radius; /* kg; m, of the sphere of equal volume */
+  real dt, time;     /* s */
+} CALX_ID(calx_body);
+#define CALX_FORCE_DECLARE(force) CALX_STRUCT(force, row)
+/* Gives: b the particle, p the numbers of the instance, out wrench, of which energies mean nothing. */
+#define CALX_FORCE_EVAL(force)                                                                         \
+  CALX_FN void CALX_ID(force##_eval)(CALX_UNUSED const CALX_ID(calx_body) * b,                         \
+                                     CALX_UNUSED const CALX_ID(force##_row) * p,                       \
+                                     CALX_UNUSED CALX_ID(calx_wrench) * out)
