@@ -45,7 +45,7 @@ env PYTHONDONTWRITEBYTECODE=1 CALX="$prefix/bin/calx" CALX_PLUGINS="$prefix/lib/
   CALX_LAW="$scratch/law/build/plugins" CALX_DEVICE_CACHE="$scratch/device_cache" \
   CALX_STAND_IN_CUDA="$build/tests/compute/libcalx_stand_in_cuda.so" \
   CALX_STAND_IN_NVRTC="$build/tests/compute/libcalx_stand_in_nvrtc.so" \
-  python3 "$root/tests/outside/test_third_party_law.py" ThirdPartyLaw.test_same_bits >"$scratch/devices.txt" 2>&1 ||
+  /usr/bin/python3 "$root/tests/outside/test_third_party_law.py" ThirdPartyLaw.test_same_bits >"$scratch/devices.txt" 2>&1 ||
   fail "third-party law on devices: $(cat "$scratch/devices.txt")"
 grep -i 'skip' "$scratch/devices.txt" || true
 
