@@ -45,7 +45,7 @@ void out_of_memory(const std::string& device, std::uint64_t asked, const DeviceM
               device + " has no memory left: " + (asked ? "asked for " + bytes_text(double(asked)) + ", " : "") +
                   "free " + (memory.free ? bytes_text(double(memory.free)) : "unknown") + ", in all " +
                   (memory.total ? bytes_text(double(memory.total)) : "unknown") + " (" + reason +
-                  "); use fewer particles, a lower precision or a device with more memory");
+                  "); use fewer particles, a device with more memory, or --device cpu");
 }
 
 void launch_failed(const std::string& device, const device_part::Kernel& kernel, std::size_t items,

@@ -24,8 +24,8 @@ DeviceChoice choose_device(const std::string& asked, const std::vector<std::stri
   const bool named = kind == "opencl" || kind == "cuda" || kind == "host";
   if ((!named && (colon != std::string::npos || (kind != "auto" && kind != "cpu"))) || number.empty() ||
       number.size() > 3 || number.find_first_not_of("0123456789") != std::string::npos)
-    throw Error(Fault::usage,
-                "--device " + asked + ": expected auto, cpu, opencl or cuda; a number chooses among several: cuda:1");
+    throw Error(Fault::usage, "--device " + asked +
+                                  ": expected auto, cpu, opencl, cuda or host; a number chooses among several: cuda:1");
   DeviceChoice choice;
   choice.text = "cpu";
   if (kind == "cpu") return choice;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # check.sh BUILD: installs a finished build into an empty folder, moves that folder, and uses it without the source tree:
-# program, plugins, and a third party's law built against the installed package with plain make.
+# program, plugins, and a third party's law built against the installed package with plain make and run on devices.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=$(cd "$1" && pwd)
@@ -40,4 +40,13 @@ python3 "$root/tests/hygiene/exports.py" "$scratch/law/build/plugins"
   fail "calx plugin describe org.example.spring"
 grep -q 'normal stiffness' "$scratch/describe.txt" || fail "calx plugin describe org.example.spring does not show its parameters"
 
-echo "installed, moved, $(grep -c . "$scratch/list.txt") lines of plugins, third-party law described"
+# It runs on every device of the machine, to the bits of its native code; a device that is not there is named and skipped.
+env PYTHONDONTWRITEBYTECODE=1 CALX="$prefix/bin/calx" CALX_PLUGINS="$prefix/lib/calx/plugins" CALX_SOURCE="$root" \
+  CALX_LAW="$scratch/law/build/plugins" CALX_DEVICE_CACHE="$scratch/device_cache" \
+  CALX_STAND_IN_CUDA="$build/tests/compute/libcalx_stand_in_cuda.so" \
+  CALX_STAND_IN_NVRTC="$build/tests/compute/libcalx_stand_in_nvrtc.so" \
+  /usr/bin/python3 "$root/tests/outside/test_third_party_law.py" ThirdPartyLaw.test_same_bits >"$scratch/devices.txt" 2>&1 ||
+  fail "third-party law on devices: $(cat "$scratch/devices.txt")"
+grep -i 'skip' "$scratch/devices.txt" || true
+
+echo "installed, moved, $(grep -c . "$scratch/list.txt") lines of plugins, third-party law described and run on devices"

@@ -87,7 +87,7 @@ class CommandLine(CalxTest):
                             (["run", path, "--set", "time/end=1"], r"--set time/end=1: expected /json/pointer=value, for instance"),
                             (["run", path, "--set", "/time/end"], r"--set /time/end: expected /json/pointer=value"),
                             (["run", path, "--device", "cuda"], r"device kind cuda needs an NVIDIA driver"),
-                            (["run", path, "--device", "gpu"], r"--device gpu: expected auto, cpu, opencl or cuda"),
+                            (["run", path, "--device", "gpu"], r"--device gpu: expected auto, cpu, opencl, cuda or host"),
                             (["run", path, "--precision", "half"], r'--precision half: .*"double"'),
                             (["run", path, "--arithmetic", "wild"], r'--arithmetic wild: .*"exact" or "fast"'),
                             (["check"], r"check: a case file is needed"),

@@ -6,6 +6,9 @@
  * one body, CALX_LAW_EVAL(SYMBOL). It may use real, R(0.5) for literals, calx_sqrt calx_abs calx_min calx_max,
  * arithmetic, comparison and ?: with both sides safe to compute. No loop, if, index, cast, or name with two
  * underscores; every name it defines begins with its file's stem. A text may hold several laws that share functions.
+ * Words that OpenCL C reserves (half, kernel, global, local, constant, private, generic, read_only, bool, ...) and words
+ * of C++ are no names, not even inside of a body; nothing from outside of the text is used. On its main path a law does
+ * not branch on which of two expressions is larger that are equal in exact arithmetic.
  *
  * sliding.h and rolling.h, in the same dialect, follow this header in that order: friction and rolling resistance that
  * several laws share. A host that compiles law texts puts the three before any law. */
