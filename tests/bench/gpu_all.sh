@@ -72,7 +72,7 @@ done
 
 # The C library belongs to the system and stays out; the C++ runtime goes apart, for a system whose own is older.
 pack_build() {
-  local folder file library target=$1 name=calx-gpu
+  local file library target=$1 name=calx-gpu
   build=$(cd "$build" && pwd) || fail "$build: no such folder"
   [[ -x $build/bin/calx ]] || fail "$build/bin/calx: not built; ninja -C $build calx plugins/all test_scenes_devices"
   folder=$(mktemp -d) || exit 1
@@ -105,7 +105,9 @@ pack_build() {
   echo "$target: $(du -h "$target" | cut -f1), unpacks to $name/; then $name/tests/bench/gpu_all.sh" >&2
 }
 
-for word in ${only//,/ }; do [[ " digests same bench paper " == *" $word "* ]] || fail "--only $word: digests, same, bench or paper"; done
+for word in ${only//,/ }; do
+  [[ " digests same bench paper " == *" $word "* ]] || fail "--only $word: digests, same, bench or paper"
+done
 for word in ${cases//,/ }; do
   [[ " settled pour clumps drum fill " == *" $word "* ]] || fail "--cases $word: settled, pour, clumps, drum or fill"
 done
@@ -152,7 +154,7 @@ out=$(cd "$out" && pwd)
 python=$(command -v python3) || fail "python3 is needed for rows and tables"
 cores=$(nproc)
 if [[ -n $small ]]; then
-  results="" sizes=1000,3000 cpu_most=3000 drum_most=1000 until=0.002 limit=60 chunk=${dry:+1.5s} chunks=2
+  results="" sizes=1000,3000 cpu_most=3000 drum_most=1000 until=0.02 limit=60 chunk=${dry:+1.5s} chunks=2
   chunk=${chunk:-8s}
   [[ -z $dry ]] || sizes=300 cpu_most=300 drum_most=400 until=0.0004 cases=settled,drum
 fi

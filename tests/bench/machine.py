@@ -1,4 +1,4 @@
-"""machine.py: what a row of results says about the machine. Needs nothing but Python, so that it runs where nothing is installed."""
+"""machine.py: what a row of results says about the machine. Needs nothing but Python."""
 import os
 import pathlib
 import re

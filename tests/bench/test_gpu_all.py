@@ -1,4 +1,5 @@
-"""gpu_all.sh from end to end with tiny sizes on an OpenCL device, its packs, and what it says when something fails. Nothing is timed."""
+"""gpu_all.sh from end to end with tiny sizes on an OpenCL device, its packs, and what it says when something fails. Nothing
+is timed."""
 import json
 import os
 import pathlib
@@ -29,7 +30,7 @@ class GpuAllTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         for part in ("device", "same", "bench-settled-300-opencl", "bench-drum-300-opencl", "report"):
             self.assertRegex(done.stdout, rf"(?m)^{part} +passed")
-        self.assertIn("same bits: 9 series", done.stdout)
+        self.assertIn("same bits: 9 series, checkpoint.h5, particles.h5;", done.stdout)
         rows = [json.loads(line) for line in (self.dir / "rows.jsonl").read_text().splitlines()]
         timed = [(row["case"], row["asked"]) for row in rows if "calx" in row]
         self.assertEqual(timed, [(case, where) for case in ("settled 300", "drum 300") for where in ("cpu", "opencl")])
@@ -52,12 +53,22 @@ class GpuAllTest(unittest.TestCase):
 
     def test_differences_are_found(self):
         for name, seed in (("a", 1), ("b", 1), ("c", 2)):
-            done = call(CALX, "run", CASE, "--until", "0.0002", "--device", "cpu", "--seed", seed, "-o", self.dir / name, "--no-report")
+            done = call(CALX, "run", CASE, "--until", "0.0002", "--device", "cpu", "--seed", seed, "-o", self.dir / name,
+                        "--no-report")
             self.assertEqual(done.returncode, 0, done.stderr)
         done = call(sys.executable, ROWS, "same", self.dir / "a", self.dir / "b", "--device", "cpu")
         self.assertEqual(done.returncode, 0, done.stderr)
         done = call(sys.executable, ROWS, "same", self.dir / "a", self.dir / "c", "--device", "cpu")
         self.assertIn("not the same bits: ", done.stderr)
+        # One bit of one file, in a place that is no time.
+        path = self.dir / "b/checkpoint.h5"
+        data = bytearray(path.read_bytes())
+        data[-1000] ^= 1
+        whole = path.read_bytes()
+        path.write_bytes(data)
+        done = call(sys.executable, ROWS, "same", self.dir / "a", self.dir / "b", "--device", "cpu")
+        self.assertIn("not the same bits: checkpoint.h5", done.stderr)
+        path.write_bytes(whole)
         done = call(sys.executable, ROWS, "same", self.dir / "a", self.dir / "b", "--device", "cuda")
         self.assertIn("asked for cuda, ran on cpu", done.stderr)
 
@@ -65,16 +76,19 @@ class GpuAllTest(unittest.TestCase):
         pack = self.dir / "pack.tar.gz"
         done = call(SCRIPT, "--pack", pack, "--build", CALX.parent.parent)
         self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("gpu_all.sh: line", done.stderr)
         shutil.unpack_archive(pack, self.dir)
-        done = call(self.dir / "calx-gpu/tests/bench/gpu_all.sh", "--device", "host", "--dry", "--only", "same", "--out", self.dir / "out")
+        done = call(self.dir / "calx-gpu/tests/bench/gpu_all.sh", "--device", "host", "--dry", "--only", "same", "--out",
+                    self.dir / "out")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("same bits: ", done.stdout)
         names = {path.name for path in (self.dir / "calx-gpu/lib").iterdir()}
         self.assertFalse([name for name in names if name.startswith(("libc.so", "libm.so", "libstdc++"))], names)
 
     def test_refusals(self):
-        for words, text in ((["--sice", "1"], "--sice: not known"), (["--only", "all"], "--only all"), (["--cases", "law"], "--cases law"),
-                            (["--out"], "--out: needs a value"), (["--build", "/nowhere"], "/nowhere")):
+        for words, text in ((["--sice", "1"], "--sice: not known"), (["--only", "all"], "--only all"),
+                            (["--cases", "law"], "--cases law"), (["--out"], "--out: needs a value"),
+                            (["--build", "/nowhere"], "/nowhere")):
             done = call(SCRIPT, *words)
             self.assertEqual(done.returncode, 2, words)
             self.assertIn(text, done.stderr)
