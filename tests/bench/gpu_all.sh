@@ -290,7 +290,7 @@ bench() {
       first=""
       for where in cpu "$device"; do
         time_case "fill first_fill" fill "$where" 10000 --case "$root/examples/canister_fill/first_fill.json" \
-          --at "$([[ -n $small ]] && echo 0.0002 || echo 0.6)"
+          --at "$([[ -n $small ]] && echo 0.0002 || echo 0.3)"
         [[ -n $small ]] || time_case "fill paper" fill "$where" 100000 --case "$root/examples/canister_fill/paper.json"
       done
     fi
