@@ -53,7 +53,7 @@ class StokesDrag : public calx::Instance {
                                               stokes_drag_row_fields,
                                               "stokes_drag",
                                               source,
-                                              sizeof source,
+                                              sizeof source - 1,
                                               sha256,
                                               &numbers};
     return std::strcmp(id, CALX_PARTICLE_FORCE) == 0 ? &table : nullptr;

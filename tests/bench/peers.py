@@ -8,47 +8,21 @@ the profile of each case.
 import argparse
 import datetime
 import json
-import os
 import pathlib
-import re
 import shutil
 import statistics
 import sys
 import tempfile
-import time
 
 import codes
 import gate
 import goals
 import starts
+from machine import machine_name, wait_until_quiet
 
 HERE = pathlib.Path(__file__).resolve().parent
 PARTICLES = {"settled": 100000, "pour": 100000, "sizes": 100000, "clumps": 10000, "chute": 32000}
 STEPS = [(20000, 500, 2000), (200000, 100, 300), (1e300, 20, 100)]  # up to so many particles: warm-up, timed
-
-
-def busy_seconds():
-    """CPU seconds of the whole machine that were not idle."""
-    fields = [int(word) for word in pathlib.Path("/proc/stat").read_text().split("\n")[0].split()[1:]]
-    return (sum(fields[:8]) - fields[3] - fields[4]) / os.sysconf("SC_CLK_TCK")
-
-
-def wait_until_quiet(limit):
-    """Waits until less than 0.15 of one processor is busy, at most limit seconds; returns what was busy last."""
-    end, load = time.monotonic() + limit, 0.0
-    while True:
-        before = busy_seconds()
-        time.sleep(1.0)
-        load = busy_seconds() - before
-        if load < 0.15 or time.monotonic() > end:
-            return load
-
-
-def machine_name():
-    text = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
-    model = re.search(r"^model name\s*:\s*(.*)$", text, re.M)
-    words = re.sub(r"\((R|TM)\)|CPU|@.*", "", model[1] if model else "unknown")
-    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-") + f"-{os.cpu_count()}"
 
 
 def record(options, result):

@@ -38,7 +38,7 @@ Neighbor list builds = 7
 
 def options(folder, **more):
     return types.SimpleNamespace(scratch=str(folder), calx=os.environ["CALX"], threads=[1], state="settled", quiet=0, dry=True,
-                                 machine="test", rounds=1, steps=None, warm_up=None, codes=None, **more)
+                                 machine="test", rounds=1, steps=None, warm_up=None, codes=None, done=[], **more)
 
 
 class PeersTest(unittest.TestCase):

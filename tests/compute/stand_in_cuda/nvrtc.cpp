@@ -40,7 +40,8 @@ int compile(Program& program, const std::string& flags, const std::string& archi
       std::system((c + "-E -include " CALX_SHIM " -o " + base + "/b.ii " + base + "/a.cpp 2>" + base + "/log").c_str());
   if (code == 0) {
     std::string text = content(base + "/b.ii");
-    const std::regex mark("calx_stand_in_global\\s+void\\s+(\\w+)");
+    // The preprocessor may put a line marker before a name that it has put together.
+    const std::regex mark("calx_stand_in_global\\s+void\\s+(?:#[^\n]*\\s+)*(\\w+)");
     std::string entries;
     for (std::sregex_iterator k(text.begin(), text.end(), mark), end; k != end; ++k) {
       const std::string name = (*k)[1];
