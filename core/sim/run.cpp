@@ -94,6 +94,8 @@ class Run {
 
  private:
   void open() {
+    // Of building the world; a resume would drop them.
+    const std::vector<std::string> first = sim_.take_messages();
     if (!o_.resume && !o_.overwrite && holds_run(dir_))
       throw Error(Fault::files, dir_ + ": already holds a run; use " +
                                     (has_checkpoint(dir_) ? "--resume to go on, " : "") +
@@ -120,6 +122,7 @@ class Run {
     log.file = dir_ + "/run.log";
     log.append = o_.resume;
     open_log(log);
+    for (const auto& m : first) say(m);
     if (!note.empty()) say(note);
     if (o_.resume) say("resumed at t = " + brief_quantity(at, "s"));
     write_text_atomically(dir_ + "/case.json", resolved_);

@@ -53,7 +53,7 @@ static struct calx_instance the_instance;
 #ifndef BAD_OWN_EVAL
 static void CALX_CALL eval(const calx_instance* self, const calx_particle_block* block) { (void)self, (void)block; }
 #endif
-static const calx_particle_force table = {BAD_TABLE_SIZE, BAD_DRAFT, BAD_EVAL};
+static const calx_particle_force table = {BAD_TABLE_SIZE, BAD_DRAFT, BAD_EVAL, 0, 0, 0, 0, 0, 0, 0, 0};
 
 static const calx_descriptor descriptor = {sizeof(calx_descriptor),
                                            0,
