@@ -56,8 +56,7 @@ KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT sph
     touching[e] = 0;
     return;
   }
-  const CALX_ID(vec3) turning =
-      CALX_ID(cross3)(CALX_ID(make3)(c.nx, c.ny, c.nz), CALX_ID(make3)(w.fx, w.fy, w.fz));
+  const CALX_ID(vec3) turning = CALX_ID(cross3)(CALX_ID(make3)(c.nx, c.ny, c.nz), CALX_ID(make3)(w.fx, w.fy, w.fz));
   const u64 stride = n.entries;
   out[e] = w.fx;
   out[stride + e] = w.fy;

@@ -9,36 +9,36 @@
 /* Adds what the own chunk's entries do to sphere s, then, by the second, what entries of chunks before it do.
  * in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
  * chunks before it up to in_first[s + 1]. */
-#define ADD_OWN_ENTRIES(w)                                  \
-  for (u32 k = in_first[s]; k < in_middle[s]; ++k) {        \
-    const u32 e = in_entry[k];                              \
-    if (!touching[e]) continue;                             \
-    w.fx -= pair_out[e];                                    \
-    w.fy -= pair_out[stride + e];                           \
-    w.fz -= pair_out[2 * stride + e];                       \
-    w.tx -= pair_out[6 * stride + e];                       \
-    w.ty -= pair_out[7 * stride + e];                       \
-    w.tz -= pair_out[8 * stride + e];                       \
-  }                                                         \
-  for (u32 e = row_first[s]; e < row_first[s + 1]; ++e) {   \
-    if (!touching[e]) continue;                             \
-    w.fx += pair_out[e];                                    \
-    w.fy += pair_out[stride + e];                           \
-    w.fz += pair_out[2 * stride + e];                       \
-    w.tx += pair_out[3 * stride + e];                       \
-    w.ty += pair_out[4 * stride + e];                       \
-    w.tz += pair_out[5 * stride + e];                       \
+#define ADD_OWN_ENTRIES(w)                                \
+  for (u32 k = in_first[s]; k < in_middle[s]; ++k) {      \
+    const u32 e = in_entry[k];                            \
+    if (!touching[e]) continue;                           \
+    w.fx -= pair_out[e];                                  \
+    w.fy -= pair_out[stride + e];                         \
+    w.fz -= pair_out[2 * stride + e];                     \
+    w.tx -= pair_out[6 * stride + e];                     \
+    w.ty -= pair_out[7 * stride + e];                     \
+    w.tz -= pair_out[8 * stride + e];                     \
+  }                                                       \
+  for (u32 e = row_first[s]; e < row_first[s + 1]; ++e) { \
+    if (!touching[e]) continue;                           \
+    w.fx += pair_out[e];                                  \
+    w.fy += pair_out[stride + e];                         \
+    w.fz += pair_out[2 * stride + e];                     \
+    w.tx += pair_out[3 * stride + e];                     \
+    w.ty += pair_out[4 * stride + e];                     \
+    w.tz += pair_out[5 * stride + e];                     \
   }
-#define ADD_OTHER_ENTRIES(w)                                \
-  for (u32 k = in_middle[s]; k < in_first[s + 1]; ++k) {    \
-    const u32 e = in_entry[k];                              \
-    if (!touching[e]) continue;                             \
-    w.fx -= pair_out[e];                                    \
-    w.fy -= pair_out[stride + e];                           \
-    w.fz -= pair_out[2 * stride + e];                       \
-    w.tx -= pair_out[6 * stride + e];                       \
-    w.ty -= pair_out[7 * stride + e];                       \
-    w.tz -= pair_out[8 * stride + e];                       \
+#define ADD_OTHER_ENTRIES(w)                             \
+  for (u32 k = in_middle[s]; k < in_first[s + 1]; ++k) { \
+    const u32 e = in_entry[k];                           \
+    if (!touching[e]) continue;                          \
+    w.fx -= pair_out[e];                                 \
+    w.fy -= pair_out[stride + e];                        \
+    w.fz -= pair_out[2 * stride + e];                    \
+    w.tx -= pair_out[6 * stride + e];                    \
+    w.ty -= pair_out[7 * stride + e];                    \
+    w.tz -= pair_out[8 * stride + e];                    \
   }
 
 FN void add_walls(wrench* w, u32 first, u32 last, GLOBAL const u32* counts, GLOBAL const double* out, u64 stride) {
@@ -54,10 +54,10 @@ FN void add_walls(wrench* w, u32 first, u32 last, GLOBAL const u32* counts, GLOB
     }
 }
 
-#define SUM_ARGUMENTS(scalar)                                                                                          \
-  step_numbers n, GLOBAL const u32 *RESTRICT row_first, GLOBAL const u32 *RESTRICT in_first,                           \
-      GLOBAL const u32 *RESTRICT in_middle, GLOBAL const u32 *RESTRICT in_entry, GLOBAL const u8 *RESTRICT touching,   \
-      GLOBAL const scalar *RESTRICT pair_out, GLOBAL const u32 *RESTRICT wall_first,                                   \
+#define SUM_ARGUMENTS(scalar)                                                                                        \
+  step_numbers n, GLOBAL const u32 *RESTRICT row_first, GLOBAL const u32 *RESTRICT in_first,                         \
+      GLOBAL const u32 *RESTRICT in_middle, GLOBAL const u32 *RESTRICT in_entry, GLOBAL const u8 *RESTRICT touching, \
+      GLOBAL const scalar *RESTRICT pair_out, GLOBAL const u32 *RESTRICT wall_first,                                 \
       GLOBAL const u32 *RESTRICT wall_counts, GLOBAL const double *RESTRICT wall_out, GLOBAL wrench *RESTRICT sums
 
 KERNEL(sum_contacts, SUM_ARGUMENTS(double)) {
@@ -120,8 +120,8 @@ FN wrench with_forces(wrench w, GLOBAL const wrench* added, u32 p, GLOBAL const 
   w.tx += add.tx;
   w.ty += add.ty;
   w.tz += add.tz;
-  const vec3 pull = add3_f64(scale3_f64(1.0 / b->m, make3_f64(w.fx, w.fy, w.fz)),
-                             make3_f64(n.gravity_x, n.gravity_y, n.gravity_z));
+  const vec3 pull =
+      add3_f64(scale3_f64(1.0 / b->m, make3_f64(w.fx, w.fy, w.fz)), make3_f64(n.gravity_x, n.gravity_y, n.gravity_z));
   const vec3 v = add3_f64(velocity_of(b), scale3_f64(0.5 * n.dt, pull));
   energy[8 * (u64)n.particles + p] =
       (dot3_f64(make3_f64(add.fx, add.fy, add.fz), v) + dot3_f64(make3_f64(add.tx, add.ty, add.tz), spin_of(b))) * n.dt;
@@ -165,9 +165,8 @@ FN void guard_margin(GLOBAL const record* s, GLOBAL const vec3* listed, double m
 
 /* Particles of one sphere each. */
 KERNEL(move_spheres, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL const wrench* RESTRICT sums,
-       GLOBAL const wrench* RESTRICT added,
-       GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
-       GLOBAL u32* RESTRICT flags) {
+       GLOBAL const wrench* RESTRICT added, GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin,
+       GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
   if (p >= n.particles) return;
   GLOBAL record* b = body + p;
@@ -281,9 +280,9 @@ FN void set_spin(GLOBAL record* b, vec3 w) {
  * moments, kg m^2; arms: of spheres, m, principal frame. */
 KERNEL(move_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record* RESTRICT spheres,
        GLOBAL quat* RESTRICT turns, GLOBAL const vec3* RESTRICT inertia, GLOBAL const u32* RESTRICT first_sphere,
-       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sums,
-       GLOBAL const wrench* RESTRICT added, GLOBAL const vec3* RESTRICT listed,
-       GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
+       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sums, GLOBAL const wrench* RESTRICT added,
+       GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
+       GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
   if (p >= n.particles) return;
   GLOBAL record* b = body + p;
@@ -354,10 +353,9 @@ KERNEL(drift_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record
 /* Second half: kick by the forces of this step. sphere_sums: of spheres; sums: of particles, kept for the next step. */
 KERNEL(kick_particles, step_numbers n, u32 clumps, GLOBAL record* RESTRICT body, GLOBAL record* RESTRICT spheres,
        GLOBAL const quat* RESTRICT turns, GLOBAL const vec3* RESTRICT inertia, GLOBAL const u32* RESTRICT first_sphere,
-       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sphere_sums,
-       GLOBAL const wrench* RESTRICT added, GLOBAL wrench* RESTRICT sums,
-       GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
-       GLOBAL u32* RESTRICT flags) {
+       GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sphere_sums, GLOBAL const wrench* RESTRICT added,
+       GLOBAL wrench* RESTRICT sums, GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin,
+       GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
   if (p >= n.particles) return;
   GLOBAL record* b = body + p;

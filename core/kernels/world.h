@@ -20,7 +20,7 @@ typedef struct quat {
 
 /* Numbers of a step. */
 typedef struct step_numbers {
-  double dt, time;                              /* s */
+  double dt, time;                        /* s */
   double gravity_x, gravity_y, gravity_z; /* m/s^2 */
   double low_x, low_y, low_z;             /* m, of the domain */
   double high_x, high_y, high_z;

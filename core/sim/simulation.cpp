@@ -160,8 +160,7 @@ void build_engine(World& w, const SimulationOptions& options) {
   for (const auto& f : c.forces) {
     InstancePtr instance = w.registry->create(f.plugin, CALX_PARTICLE_FORCE, f.parameters, c.file);
     e.forces.push_back(
-        {static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get(),
-         f.plugin});
+        {static_cast<const calx_particle_force*>(instance->table(CALX_PARTICLE_FORCE)), instance->get(), f.plugin});
     w.force_instances.push_back(std::move(instance));
   }
   e.options.mixed = options.mixed;

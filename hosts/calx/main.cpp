@@ -47,7 +47,8 @@ struct CaseFlags {
     app.add_option("--set", set, "override, repeatable: /json/pointer=value");
     app.add_option("--threads", run.simulation.threads, "threads (default: all cores)")
         ->check(calx::whole_above_zero());
-    app.add_option("--device", device, "auto, cpu, opencl[:i] or cuda[:i]; host: the text of devices as plain loops, for debuggers");
+    app.add_option("--device", device,
+                   "auto, cpu, opencl[:i] or cuda[:i]; host: the text of devices as plain loops, for debuggers");
     app.add_option("--precision", precision, "double, or mixed: pair contacts in single precision");
     app.add_option("--arithmetic", arithmetic,
                    "exact, or fast: devices may contract a * b + c, to other last digits than the processor's");

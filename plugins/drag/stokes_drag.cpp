@@ -45,17 +45,9 @@ class StokesDrag : public calx::Instance {
   }
 
   const void* get_interface(const char* id) const override {
-    static const calx_particle_force table = {sizeof(calx_particle_force),
-                                              CALX_ABI_DRAFT,
-                                              &eval,
-                                              1,
-                                              kRow,
-                                              stokes_drag_row_fields,
-                                              "stokes_drag",
-                                              source,
-                                              sizeof source - 1,
-                                              sha256,
-                                              &numbers};
+    static const calx_particle_force table = {
+        sizeof(calx_particle_force), CALX_ABI_DRAFT, &eval,   1, kRow, stokes_drag_row_fields, "stokes_drag", source,
+        sizeof source - 1,           sha256,         &numbers};
     return std::strcmp(id, CALX_PARTICLE_FORCE) == 0 ? &table : nullptr;
   }
 

@@ -30,7 +30,7 @@ def check(path):
     text = raw.decode("latin-1")
     code = blank(text)
     # Every name the text defines begins with the file's stem, as do its symbols; the shared texts of the ABI use calx_.
-    symbols = re.findall(r"CALX_LAW_DECLARE\w*\((\w+)", code)
+    symbols = re.findall(r"CALX_(?:LAW|FORCE)_DECLARE\w*\((\w+)", code)
     stem = re.sub(r"\.law\.h$", "", os.path.basename(path))
     stems = (stem,) if symbols else ("calx_", "CALX_")
     for symbol in symbols:
@@ -61,10 +61,11 @@ def check(path):
         for literal in re.finditer(r"(?<![\w.])(\d+\.\d*(?:[eE][-+]?\d+)?|\.\d+|\d+[eE][-+]?\d+)\w*", arithmetic):
             if not re.search(r"R\(\s*-?$", arithmetic[: literal.start()]):
                 found.add((number, f"bare literal {literal.group()}: write R({literal.group()})"))
-    if symbols and len(re.findall(r"CALX_LAW_EVAL\(", code)) != len(symbols):
-        found.add((1, "each declared symbol needs one CALX_LAW_EVAL"))
+    if symbols and len(re.findall(r"CALX_(?:LAW|FORCE)_EVAL\(", code)) != len(symbols):
+        found.add((1, "each declared symbol needs one CALX_LAW_EVAL or CALX_FORCE_EVAL"))
+    forces = re.findall(r"CALX_FORCE_DECLARE\((\w+)", code)
     for symbol in symbols:
-        for part in ("pair_LIST", "prop_LIST", "state_LIST", "NEEDS"):
+        for part in ("row_LIST",) if symbol in forces else ("pair_LIST", "prop_LIST", "state_LIST", "NEEDS"):
             if not re.search(rf"#\s*define\s+{symbol}_{part}\b", code):
                 found.add((1, f"{symbol}_{part} is not defined"))
     return sorted(found)

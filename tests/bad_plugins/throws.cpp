@@ -26,7 +26,8 @@ const calx_descriptor Confused::descriptor = {sizeof(calx_descriptor),
                                               nullptr};
 
 void CALX_CALL eval(const calx_instance*, const calx_particle_block*) {}
-const calx_particle_force force = {sizeof(calx_particle_force), CALX_ABI_DRAFT, eval, 0, 0, nullptr, nullptr, nullptr, 0, nullptr, nullptr};
+const calx_particle_force force = {
+    sizeof(calx_particle_force), CALX_ABI_DRAFT, eval, 0, 0, nullptr, nullptr, nullptr, 0, nullptr, nullptr};
 
 struct Strict : calx::Instance {
   static const calx_descriptor descriptor;
