@@ -6,20 +6,21 @@
 #ifndef CALX_MOTION_H
 #define CALX_MOTION_H
 
-/* Adds what the own chunk's entries do to sphere s, then, by the second, what entries of chunks before it do.
- * in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
- * chunks before it up to in_first[s + 1]. */
+/* in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
+ * chunks before it up to in_first[s + 1]. Macros, because w is of either precision. */
+#define TAKE_REACTIONS(w, from, to)   \
+  for (u32 k = from; k < to; ++k) {   \
+    const u32 e = in_entry[k];        \
+    if (!touching[e]) continue;       \
+    w.fx -= pair_out[e];              \
+    w.fy -= pair_out[stride + e];     \
+    w.fz -= pair_out[2 * stride + e]; \
+    w.tx -= pair_out[6 * stride + e]; \
+    w.ty -= pair_out[7 * stride + e]; \
+    w.tz -= pair_out[8 * stride + e]; \
+  }
 #define ADD_OWN_ENTRIES(w)                                \
-  for (u32 k = in_first[s]; k < in_middle[s]; ++k) {      \
-    const u32 e = in_entry[k];                            \
-    if (!touching[e]) continue;                           \
-    w.fx -= pair_out[e];                                  \
-    w.fy -= pair_out[stride + e];                         \
-    w.fz -= pair_out[2 * stride + e];                     \
-    w.tx -= pair_out[6 * stride + e];                     \
-    w.ty -= pair_out[7 * stride + e];                     \
-    w.tz -= pair_out[8 * stride + e];                     \
-  }                                                       \
+  TAKE_REACTIONS(w, in_first[s], in_middle[s])            \
   for (u32 e = row_first[s]; e < row_first[s + 1]; ++e) { \
     if (!touching[e]) continue;                           \
     w.fx += pair_out[e];                                  \
@@ -28,17 +29,6 @@
     w.tx += pair_out[3 * stride + e];                     \
     w.ty += pair_out[4 * stride + e];                     \
     w.tz += pair_out[5 * stride + e];                     \
-  }
-#define ADD_OTHER_ENTRIES(w)                             \
-  for (u32 k = in_middle[s]; k < in_first[s + 1]; ++k) { \
-    const u32 e = in_entry[k];                           \
-    if (!touching[e]) continue;                          \
-    w.fx -= pair_out[e];                                 \
-    w.fy -= pair_out[stride + e];                        \
-    w.fz -= pair_out[2 * stride + e];                    \
-    w.tx -= pair_out[6 * stride + e];                    \
-    w.ty -= pair_out[7 * stride + e];                    \
-    w.tz -= pair_out[8 * stride + e];                    \
   }
 
 FN void add_walls(wrench* w, u32 first, u32 last, GLOBAL const u32* counts, GLOBAL const double* out, u64 stride) {
@@ -68,7 +58,7 @@ KERNEL(sum_contacts, SUM_ARGUMENTS(double)) {
   w.fx = w.fy = w.fz = w.tx = w.ty = w.tz = 0.0;
   ADD_OWN_ENTRIES(w)
   add_walls(&w, wall_first[s], wall_first[s + 1], wall_counts, wall_out, (u64)n.wall_rows * WALL_CONTACTS);
-  ADD_OTHER_ENTRIES(w)
+  TAKE_REACTIONS(w, in_middle[s], in_first[s + 1])
   sums[s] = w;
 }
 
@@ -86,7 +76,7 @@ KERNEL(sum_contacts_mixed, SUM_ARGUMENTS(float)) {
   wrench w;
   w.fx = w.fy = w.fz = w.tx = w.ty = w.tz = 0.0;
   add_walls(&w, wall_first[s], wall_first[s + 1], wall_counts, wall_out, (u64)n.wall_rows * WALL_CONTACTS);
-  ADD_OTHER_ENTRIES(w)
+  TAKE_REACTIONS(w, in_middle[s], in_first[s + 1])
   w.fx += own.fx;
   w.fy += own.fy;
   w.fz += own.fz;

@@ -40,17 +40,16 @@ DeviceChoice choose_device(const std::string& asked, const std::vector<std::stri
     choice.text = describe(*choice.device);
     return choice;
   }
-  std::string why;
+  choice.text = "cpu; no CUDA device";  // --device cuda says why
   for (const DeviceListing& d : list_devices()) {
-    if (d.kind != "cuda") continue;
+    if (d.kind != "cuda" || d.ordinal < 0) continue;
     if (d.why_not.empty() && d.inexact.empty()) {
       choice.device = open_device(d.kind, d.ordinal);
       choice.text = describe(*choice.device);
       return choice;
     }
-    why = d.why_not.empty() ? d.inexact : d.why_not;
+    choice.text = "cpu; " + d.name + ": " + (d.why_not.empty() ? d.inexact : d.why_not);
   }
-  choice.text = "cpu; cuda: " + (why.empty() ? "no device" : why);
   return choice;
 }
 
