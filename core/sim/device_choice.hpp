@@ -10,7 +10,7 @@ namespace calx {
 
 struct DeviceChoice {
   std::unique_ptr<Device> device;  // null: this processor
-  std::string text;                // "cpu: law \"x\" has no law text, only native code", "opencl: <name>, <driver>"
+  std::string text;                // "cpu; no CUDA device", "opencl: <name>, <driver>"
   bool differs = false;            // not what was asked for by name: say so before the run starts
 };
 

@@ -201,10 +201,10 @@ void Engine::OnDevice::take_results() {
     engine_.missing_law(pair / engine_.material_count, pair % engine_.material_count);
   }
   const std::size_t width = result_width();
-  std::vector<double> sums(engine_.results_.size() * width);
-  m.take(m.chunk_sums, sums);
+  m.results.resize(engine_.results_.size() * width);
+  m.take(m.chunk_sums, m.results);
   for (std::size_t c = 0; c < engine_.results_.size(); ++c) {
-    const double* from = &sums[c * width];
+    const double* from = &m.results[c * width];
     ChunkResult& r = engine_.results_[c];
     r.energy.total = {from[sum_elastic], from[sum_friction], from[sum_damping], from[sum_plastic]};
     r.wall_work.total = from[sum_wall_work];

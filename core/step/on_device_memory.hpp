@@ -41,6 +41,7 @@ struct Engine::OnDevice::Memory {
   DeviceBuffer added, pair_out, pair_share, pair_energy, wall_out, wall_share, wall_energy, sums, particle_energy,
       pair_sums, wall_sums, particle_sums, chunk_sums, flags;
   std::uint32_t sphere_spans = 0, particle_spans = 0;
+  std::vector<double> results;  // of chunks, as they came back
   std::size_t bytes = 0;
 
   /// At least so many bytes; what was there is gone when it grows.

@@ -14,7 +14,7 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt, bool captu
   const RestWalk* const rest = capture ? &rest_->walks[c] : walk(c);
   if (!capture) {
     result.energy.close();  // of the pairs
-    result.energy.span = result.wall_work.span = result.load_span = 0;
+    result.load_span = 0;
     result.span_load.assign(parts.size(), Wrench{});
     if (rest) {
       result.load = rest->load;
