@@ -2,10 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace calx {
 
-Flank fit_flank(const std::vector<double>& heights, double d) {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Where a flank lies: [top, toe], the first bin within d of the lowest; found: it is high enough to have an angle.
+struct Extent {
+  bool found = false;
+  std::size_t top = 0, toe = 0;
+  double base = 0, height = 0;  // m, of the lowest bin; above it of the highest
+};
+
+Extent extent_of(const std::vector<double>& heights, double d) {
   std::size_t end = 0;  // one past the last bin of the flank
   for (std::size_t k = 0; k < heights.size(); ++k) {
     if (!std::isnan(heights[k]))
@@ -13,28 +25,58 @@ Flank fit_flank(const std::vector<double>& heights, double d) {
     else if (end > 0 && k >= end + 1)
       break;
   }
-  std::size_t top = end;
+  Extent e;
+  e.top = end;
   for (std::size_t k = 0; k < end; ++k)
-    if (!std::isnan(heights[k]) && (top == end || heights[k] > heights[top])) top = k;
-  if (top == end) return {};
-  double base = heights[top];
-  for (std::size_t k = top; k < end; ++k)
-    if (heights[k] < base) base = heights[k];
-  const double height = heights[top] - base;
-  if (height < 5 * d) return {};
-  std::size_t toe = top;
-  while (!(heights[toe] <= base + d)) ++toe;
+    if (!std::isnan(heights[k]) && (e.top == end || heights[k] > heights[e.top])) e.top = k;
+  if (e.top == end) return e;
+  e.base = heights[e.top];
+  for (std::size_t k = e.top; k < end; ++k)
+    if (heights[k] < e.base) e.base = heights[k];
+  e.height = heights[e.top] - e.base;
+  if (e.height < 5 * d) return e;
+  e.found = true;
+  e.toe = e.top;
+  while (!(heights[e.toe] <= e.base + d)) ++e.toe;
+  return e;
+}
 
+}  // namespace
+
+Flank fit_flank(const std::vector<double>& heights, double d) {
+  const Extent e = extent_of(heights, d);
+  if (!e.found) return {};
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t k = top; k + 2 <= toe; ++k) {
+  Flank flank;
+  for (std::size_t k = e.top; k + 2 <= e.toe; ++k) {
     // In units of d from the apex; a bin counts by its middle.
     const double x = static_cast<double>(k) + 0.5, y = heights[k];
-    if (x < 2 || !(y >= base + 0.2 * height && y <= base + 0.8 * height)) continue;
+    if (x < 2 || !(y >= e.base + 0.2 * e.height && y <= e.base + 0.8 * e.height)) continue;
+    if (n < 1) flank.from = x * d;
+    flank.to = x * d;
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
   if (n < 3) return {};
   const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx) / d;
-  return {std::atan(-slope), static_cast<int>(n)};
+  flank.angle = std::atan(-slope);
+  flank.bins = static_cast<int>(n);
+  flank.level = sy / n - slope * d * sx / n;
+  return flank;
+}
+
+double volume_angle(const std::vector<double>& heights, double d, bool is_wedge, double& base) {
+  base = std::numeric_limits<double>::quiet_NaN();
+  const Extent e = extent_of(heights, d);
+  if (!e.found || e.toe == 0 || std::isnan(heights[e.toe - 1])) return base;
+  const double plane = e.base + d, above = heights[e.toe - 1] - plane, below = plane - heights[e.toe];
+  base = (static_cast<double>(e.toe) - 0.5 + above / (above + below)) * d;
+  double volume = 0;
+  for (std::size_t k = 0; k <= e.toe; ++k) {
+    const double inner = static_cast<double>(k) * d, outer = std::min(inner + d, base);
+    if (std::isnan(heights[k]) || outer <= inner) continue;
+    volume += (heights[k] - plane) * (is_wedge ? outer - inner : pi * (outer * outer - inner * inner));
+  }
+  return std::atan(is_wedge ? 2 * volume / (base * base) : 3 * volume / (pi * base * base * base));
 }
 
 double percentile(std::vector<double>& values, double fraction) {

@@ -147,6 +147,8 @@ const PartSettings* SensorOptions::part(const std::string& key) {
   return has(key) ? &named(world_.parts, name) : nullptr;
 }
 
+std::string SensorOptions::event(const std::string& key) { return name_of(key, "event", names_of(world_.events)); }
+
 const MotionSettings& SensorOptions::required_motion(const std::string& key) {
   const std::string name = name_of(key, "motion", names_of(world_.motions));
   if (!has(key)) throw missing(key, "one of the motions " + quoted_list(names_of(world_.motions)));

@@ -28,10 +28,12 @@ class SensorOptions {
   std::uint64_t whole(const std::string& key, std::uint64_t lowest, std::uint64_t highest, std::uint64_t preset);
   /// Two or three numbers (z is 0 when left out).
   Vec3 vector(const std::string& key, const char* unit);
-  /// A region, part or motion of the case by its name; null when the key is absent.
+  /// A region or part of the case by its name; null when the key is absent.
   const RegionSettings* region(const std::string& key);
   const RegionSettings& required_region(const std::string& key);
   const PartSettings* part(const std::string& key);
+  /// The name of an event of the case; empty when the key is absent.
+  std::string event(const std::string& key);
   const MotionSettings& required_motion(const std::string& key);
   /// The regions listed, or when the key is absent all that the case names, in its order.
   std::vector<const RegionSettings*> regions(const std::string& key);

@@ -12,7 +12,14 @@
 // Columns: angle_deg and sd_deg over all sectors, left_deg, left_sd_deg, right_deg, right_sd_deg of those whose middle
 // lies towards -direction and +direction, sectors_1 and bins_1 that gave an angle, apex_x_m, apex_y_m, apex_z_m. Never
 // quote an angle finer than its sd. NaN when fewer than half of the sectors (of a side: none) show a flank.
-// Curve "profile": radius or distance (negative to the left) against height, over all azimuths or the whole width.
+// volume_angle_deg is an independent check that fits no flank: the angle of a cone of the same volume and base, or of a
+// wedge of the same cross-section (flank.hpp), from the profile; base_m is the radius, or the length, of that base. A
+// rounded apex and a flat toe make it read low. NaN for a ridge, which has two flanks.
+//
+// Curves: "profile", radius or distance (negative to the left) against height, over all azimuths or the whole width;
+// "flank" (of a wedge: "flank left", "flank right"), the line of fit_flank through the profile; "sectors", the azimuth
+// of each sector's middle (deg, 0 along the direction) or its place along the ridge (m; left flanks, then right ones)
+// against its angle.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -81,12 +88,15 @@ class ReposeSensor : public Sensor {
         centre_(centre),
         direction_(direction) {}
   std::vector<std::string> columns() const override {
-    return {"angle_deg", "sd_deg", "left_deg", "left_sd_deg", "right_deg", "right_sd_deg",
-            "sectors_1", "bins_1", "apex_x_m", "apex_y_m",    "apex_z_m"};
+    return {"angle_deg", "sd_deg",   "left_deg", "left_sd_deg", "right_deg",        "right_sd_deg", "sectors_1",
+            "bins_1",    "apex_x_m", "apex_y_m", "apex_z_m",    "volume_angle_deg", "base_m"};
   }
 
   std::vector<double> sample(const WorldView& world) override {
     profile_ = {"profile", is_wedge_ ? "distance_m" : "radius_m", "height_m", {}, {}};
+    each_ = {"sectors", is_wedge_ ? "across_m" : "azimuth_deg", "angle_deg", {}, {}};
+    lines_.clear();
+    volume_angle_ = base_ = nan;
     const std::vector<const Record*> spheres = spheres_in(world, region_);
     std::vector<double> row(columns().size(), nan);
     row[6] = row[7] = 0;
@@ -110,11 +120,15 @@ class ReposeSensor : public Sensor {
     row[6] = static_cast<double>(all.values.size());
     row[7] = all.bins;
     if (2 * all.values.size() < possible) return row;
-    return {all.mean(), all.sd(), left.mean(), left.sd(), right.mean(), right.sd(),
-            row[6],     row[7],   apex.x,      apex.y,    apex.z};
+    return {all.mean(), all.sd(), left.mean(), left.sd(), right.mean(),  right.sd(), row[6],
+            row[7],     apex.x,   apex.y,      apex.z,    volume_angle_, base_};
   }
 
-  std::vector<CurveResult> curves() const override { return {profile_}; }
+  std::vector<CurveResult> curves() const override {
+    std::vector<CurveResult> all{profile_, each_};
+    all.insert(all.end(), lines_.begin(), lines_.end());
+    return all;
+  }
 
  private:
   std::vector<Cell> surface_of(const std::vector<const Record*>& spheres) const {
@@ -194,10 +208,14 @@ class ReposeSensor : public Sensor {
       const Flank flank = fit_flank(sector[s].heights(), d_);
       const double side = std::cos((static_cast<double>(s) + 0.5) / count * 2 * pi - pi);
       all.add(flank);
+      add_sector((static_cast<double>(s) + 0.5) / count * 360 - 180, flank);
       if (side < -1e-9) left.add(flank);
       if (side > 1e-9) right.add(flank);
     }
-    append_profile(whole.heights(), 1);
+    const std::vector<double> heights = whole.heights();
+    append_profile(heights, 1);
+    add_line("flank", heights, 1);
+    volume_angle_ = volume_angle(heights, d_, false, base_) * 180 / pi;
   }
 
   void measure_wedge(const std::vector<Cell>& cells, const Vec3& apex, Angles& left, Angles& right) {
@@ -215,14 +233,37 @@ class ReposeSensor : public Sensor {
       slices[a > 0][std::min(sectors_ - 1, s)].add(std::abs(a), cell.z, d_);
       whole[a > 0].add(std::abs(a), cell.z, d_);
     }
-    for (std::size_t s = 0; s < sectors_; ++s) {
-      left.add(fit_flank(slices[0][s].heights(), d_));
-      right.add(fit_flank(slices[1][s].heights(), d_));
-    }
-    append_profile(whole[0].heights(), -1);
+    for (const bool is_right : {false, true})
+      for (std::size_t s = 0; s < sectors_; ++s) {
+        const Flank flank = fit_flank(slices[is_right][s].heights(), d_);
+        (is_right ? right : left).add(flank);
+        add_sector(low + (static_cast<double>(s) + 0.5) * width, flank);
+      }
+    const std::vector<double> heights[2] = {whole[0].heights(), whole[1].heights()};
+    append_profile(heights[0], -1);
     std::reverse(profile_.x.begin(), profile_.x.end());
     std::reverse(profile_.y.begin(), profile_.y.end());
-    append_profile(whole[1].heights(), 1);
+    append_profile(heights[1], 1);
+    add_line("flank left", heights[0], -1);
+    add_line("flank right", heights[1], 1);
+    if (lines_.size() == 1) volume_angle_ = volume_angle(heights[lines_[0].x[0] > 0], d_, true, base_) * 180 / pi;
+  }
+
+  void add_sector(double place, const Flank& flank) {
+    if (flank.bins == 0) return;
+    each_.x.push_back(place);
+    each_.y.push_back(flank.angle * 180 / pi);
+  }
+
+  void add_line(const std::string& name, const std::vector<double>& heights, double side) {
+    const Flank flank = fit_flank(heights, d_);
+    if (flank.bins == 0) return;
+    CurveResult line{name, profile_.x_name, profile_.y_name, {}, {}};
+    for (const double x : {flank.from, flank.to}) {
+      line.x.push_back(side * x);
+      line.y.push_back(flank.level - std::tan(flank.angle) * x);
+    }
+    lines_.push_back(line);
   }
 
   void append_profile(const std::vector<double>& heights, double side) {
@@ -238,7 +279,9 @@ class ReposeSensor : public Sensor {
   bool has_centre_;
   Vec3 centre_, direction_;
   double d_ = 0;  // m, median sphere diameter
-  CurveResult profile_;
+  CurveResult profile_, each_;
+  std::vector<CurveResult> lines_;
+  double volume_angle_ = nan, base_ = nan;  // deg, m
 };
 
 }  // namespace

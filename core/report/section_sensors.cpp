@@ -214,7 +214,7 @@ void Sections::pile() {
   for (const auto& [sensor, curve] : run.curves) {
     const SensorSeries* s = nullptr;
     for (const SensorSeries& one : run.sensors) s = one.name == sensor ? &one : s;
-    if (s && s->kind == "cycle-mass") continue;  // drawn under Dosing
+    if (s && (s->kind == "cycle-mass" || is_flow_kind(s->kind))) continue;  // drawn under Dosing or Flow
     const Quantity x = quantity_of(curve.x_name), y = quantity_of(curve.y_name);
     const bool lengths = x.unit == "m" && y.unit == "m";
     const double high_x = largest(curve.x), high_y = largest(curve.y);

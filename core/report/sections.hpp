@@ -19,7 +19,8 @@ struct Sections {
   void overview();       // checks, assumptions, deviations, what is missing
   void pictures();       // stills, section, playback
   void dosing();         // mass against time and cycle, flow
-  void pile();           // profiles, height maps, angle of repose
+  void flow();           // lab plots of discharge, piles and drums
+  void pile();           // height maps, other profiles, angle of repose against time
   void ledgers();        // energy and mass
   void loads();          // forces, torques, power on parts
   void other_sensors();  // whatever was not drawn yet
@@ -30,6 +31,8 @@ struct Sections {
   /// One chart per unit of the sensor's columns, but for those named.
   std::string sensor_charts(const SensorSeries& sensor, const std::set<std::string>& leave_out = {});
   std::vector<ChartMark> event_marks() const;
+  /// Sensors of that kind have their curves in flow().
+  static bool is_flow_kind(const std::string& kind);
 };
 
 }  // namespace calx

@@ -18,7 +18,8 @@ FakeWorld small_world() {
 }  // namespace
 
 TEST_CASE("every built-in kind is known and makes a sensor with columns that end in a unit") {
-  const FakeWorld world = small_world();
+  FakeWorld world = small_world();
+  world.add_cylinder("drum", {0, 0, 0}, {0, 1, 0}, 0.5);
   const std::pair<const char*, const char*> kinds[] = {
       {"mass", R"({"region": "hopper"})"},
       {"cycle-mass", R"({"region": "canister", "motion": "rotor turn"})"},
@@ -27,6 +28,9 @@ TEST_CASE("every built-in kind is known and makes a sensor with columns that end
       {"coordination", "{}"},
       {"height-map", R"({"region": "hopper", "cell": 0.1})"},
       {"angle-of-repose", R"({"region": "hopper"})"},
+      {"discharge", R"({"region": "hopper", "bed": "hopper", "width": 0.1, "length": 0.5})"},
+      {"drum-surface", R"({"region": "drum"})"},
+      {"inertial-number", R"({"region": "hopper"})"},
       {"residue", R"({"part": "rotor"})"},
       {"part-load", R"({"part": "rotor"})"},
       {"energy", "{}"},
@@ -48,8 +52,8 @@ TEST_CASE("an unknown kind names the nearest one") {
   CHECK(
       small_world().error_of("{}", "bulk-densty") ==
       "case.json /sensors/0/kind: unknown kind of sensor \"bulk-densty\"; did you mean \"bulk-density\"? Built in are "
-      "mass, cycle-mass, flow, bulk-density, coordination, height-map, angle-of-repose, residue, part-load, energy, "
-      "mass-ledger; others are named by their plugin's id");
+      "mass, cycle-mass, flow, bulk-density, coordination, height-map, angle-of-repose, discharge, drum-surface, "
+      "inertial-number, residue, part-load, energy, mass-ledger; others are named by their plugin's id");
 }
 
 TEST_CASE("wrong keys and values say where, what and what would be right") {
