@@ -1,5 +1,6 @@
 // case_reader.hpp: one reading of a Document into CaseSettings. Private to this module; each group of sections has its
-// own source file: case_particles.cpp, case_machine.cpp, case_events.cpp, case_run.cpp, case_regions.cpp.
+// own source file: case_particles.cpp, case_machine.cpp, case_events.cpp, case_run.cpp, case_regions.cpp,
+// case_scale.cpp.
 #pragma once
 #include <string>
 #include <vector>
@@ -56,6 +57,9 @@ class CaseReader {
   void read_output(Object& root);
   void read_rest(Object& root);
   void read_plugins(Object& root);
+
+  // case_scale.cpp
+  void read_scale(Object& root);
 
   Document& document_;
   Names names_;

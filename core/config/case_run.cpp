@@ -148,6 +148,7 @@ CaseSettings CaseReader::read() {
   for (const Node& n : root.items("assumptions", "texts"))
     case_.assumptions.push_back(n.text("one assumption in words"));
   read_plugins(root);
+  read_scale(root);
   root.done();
   check_event_cycles();
   return case_;

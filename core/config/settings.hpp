@@ -173,6 +173,12 @@ struct RestSettings {
   double force = 0.1;          // of the weight: out of balance by no more
 };
 
+/// Grains made larger by one factor while vessels stay; rules in config/scale.hpp.
+struct ScaleSettings {
+  double factor = 1;
+  enum class Cohesion { strength, bond } cohesion = Cohesion::strength;
+};
+
 struct CaseSettings {
   std::string file;    // path of the case, for messages
   std::string folder;  // absolute; relative paths of the case start here
@@ -195,6 +201,7 @@ struct CaseSettings {
   OutputSettings output;
   NeighbourSettings neighbour;
   RestSettings rest;
+  ScaleSettings scale;         // shapes, counts, the given step, the skin and energies of conditions have it already
   bool energy_ledger = false;  // "energy": true, or a sensor of kind "energy"
   double overlap_limit = 0.5;  // of the radius: beyond it the run stops as a blow-up or a particle gone through a wall
   std::vector<std::string> assumptions;

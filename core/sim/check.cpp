@@ -44,6 +44,20 @@ std::string check_case(const RunOptions& options) {
     line("  " + std::string(l.binds ? "* " : "  ") + l.name +
          std::string(l.name.size() < 9 ? 9 - l.name.size() : 0, ' ') + brief_quantity(l.seconds, "s") + "  " + l.where +
          (l.binds ? "  <- binds" : ""));
+  if (c.scale.factor != 1) {
+    line("Scale: grains " + format_number(c.scale.factor) +
+         " times as large; kept: density, moduli, restitution, friction, " +
+         (c.scale.cohesion == ScaleSettings::Cohesion::strength ? "strength of the bulk" : "Bond number of a grain") +
+         (c.time.step > 0 ? "; the given time step is " + format_number(c.scale.factor) + " times that of the case"
+                          : ""));
+    for (const auto& s : c.shapes) {
+      double radius = 0;
+      for (const auto& sphere : s.spheres) radius = std::max(radius, sphere.radius);
+      line("  " + s.name + ": largest sphere " + brief_quantity(radius / c.scale.factor, "m") + " -> " +
+           brief_quantity(radius, "m") + " in radius");
+    }
+    for (const auto& text : sim.scaled()) line("  " + text);
+  }
   double mass = 0, particles = 0, spheres = 0;
   const auto& shapes = sim.world().particles().shapes;
   for (const auto& s : c.sources) {

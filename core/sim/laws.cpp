@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "config/scale.hpp"
 #include "plugin/contact_law.hpp"
 
 namespace calx {
@@ -36,6 +37,22 @@ void refuse_unsupported(const calx_contact_law& table, const std::string& where)
                                      "\" survives separation, which this host does not offer yet");
 }
 
+/// Values of a table for grains of another size. lines gets what changed, "calcine-steel calx.linear: kn 1e3 N/m ->
+/// ...".
+void scale_values(const ScaleSettings& scale, const FieldTable& table, const std::string& owner,
+                  std::vector<double>& values, std::vector<std::string>& lines) {
+  if (scale.factor == 1) return;  // exactly 1 leaves every bit as it is
+  for (std::uint32_t k = 0; k < table.count; ++k) {
+    const calx_field& field = table.fields[k];
+    if (field.flags & CALX_FIELD_CHOICE) continue;
+    const double by = scale_factor(scale, field.unit), before = values[k];
+    values[k] *= by;
+    const std::string line = owner + ": " + field.name + " " + brief_quantity(before, field.unit) + " -> " +
+                             brief_quantity(values[k], field.unit);
+    if (by != 1 && before != 0 && std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+}
+
 }  // namespace
 
 CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
@@ -60,7 +77,7 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
     list_ab->label = contact.between[0] + "-" + contact.between[1];
     list_ba->label = contact.between[1] + "-" + contact.between[0];
     for (const auto& entry : contact.laws) {
-      const ContactLawEntry& made = *next++;
+      ContactLawEntry& made = *next++;
       const ContactLaw& law = made.law;
       const std::string owner = law.id() + " " + law.version();
       refuse_unsupported(law.table(), settings.file + " " + entry.pointer + ": " + owner);
@@ -69,12 +86,14 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
           if (name == law.given().fields[k].name)
             out.presets.push_back(list_ab->label + " " + law.id() + ": " + name + " = " +
                                   format_quantity(law.given().fields[k].preset, law.given().fields[k].unit));
+      scale_values(settings.scale, law.given(), list_ab->label + " " + law.id(), made.given, out.scaled);
       std::vector<double> row[2];
       for (int side = 0; side < 2; ++side) {
         const auto& m = settings.materials[side == 0 ? a : b];
         row[side] = resolve_parameters(m.properties, {law.material()}, nullptr, owner, settings.file,
                                        foreign_keys(m.properties, law.material()))
                         .values[0];
+        scale_values(settings.scale, law.material(), m.name + " " + law.id(), row[side], out.scaled);
       }
       for (int direction = 0; direction < 2; ++direction) {
         LawList& list = direction == 0 ? *list_ab : *list_ba;

@@ -14,6 +14,7 @@ struct CaseLaws {
   std::vector<std::unique_ptr<LawList>> lists;
   std::vector<const LawList*> matrix;  // [a * material_count + b], null where no law is given
   std::vector<std::unique_ptr<ContactLaw>> laws;
+  std::vector<std::string> scaled;   // "calcine-calcine calx.epam: surface_energy 0.1 J/m^2 -> 0.2 J/m^2"
   std::vector<std::string> presets;  // "calcine-calcine calx.epam: pull_off = 0 N (preset)", for calx check
 };
 

@@ -244,6 +244,7 @@ std::vector<std::unique_ptr<Sensor>>& Simulation::sensors() { return impl_->w.se
 std::vector<PluginProvenance> Simulation::provenance() const { return impl_->w.registry->provenance(); }
 std::size_t Simulation::memory_bytes() const { return impl_->w.engine.memory_bytes(); }
 std::vector<std::string> Simulation::presets() const { return impl_->w.laws.presets; }
+std::vector<std::string> Simulation::scaled() const { return impl_->w.laws.scaled; }
 
 bool Simulation::finished() const {
   const World& w = impl_->w;

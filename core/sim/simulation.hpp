@@ -47,6 +47,8 @@ class Simulation {
   StepLimit law_limit_seen() const;
   /// Law parameters the case left to their presets, one line each.
   std::vector<std::string> presets() const;
+  /// Law parameters that particle scaling changed, before and after, one line each.
+  std::vector<std::string> scaled() const;
   bool finished() const;  // end time or end event reached
 
   /// One time step. Throws Error(Fault::numerics) on a blow-up, a lost particle or a non-finite number, the world being

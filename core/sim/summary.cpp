@@ -128,6 +128,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
                      {"arithmetic", s.fast() ? "fast" : "exact"},
                      {"threads", facts.threads}};
   j["presets"] = s.presets();
+  if (c.scale.factor != 1) j["scale"] = {{"factor", c.scale.factor}, {"parameters", s.scaled()}};
   j["assumptions"] = c.assumptions;
   for (const auto& part : c.parts)
     if (part.assumed) j["assumptions"].push_back("geometry of part \"" + part.name + "\" is assumed");

@@ -72,6 +72,7 @@ inline const char* full_case() {
   "output": {"frames_every": 0.05, "checkpoint_every_wall": 30, "checkpoint_every": 1, "particles_h5": false},
   "neighbour": {"skin": {"value": 0.2, "unit": "mm"}},
   "rest": {"after": {"value": 5, "unit": "ms"}, "displacement": 1e-4, "force": 0.02},
+  "scale": {"factor": 1, "cohesion": "bond"},
   "energy": true, "overlap_limit": 0.3,
   "assumptions": ["rotor diameter is not in the paper: 50 mm"],
   "plugins": {"org.example.sensor": {"sha256": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"}}
