@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""peers.py: points that other codes and an experiment gave, run with Calx; results beside the source's own scatter.
+
+  peers.py lift N        row N (from 1) of tests/data/wheat/cylinder_lift.csv
+  peers.py discharge N   row N of tests/data/wheat/discharge.csv
+  peers.py drum RPM      GranuDrum with MCC pellets (tests/data/granudrum), with the friction given
+  peers.py all           every wheat point, one after the other
+  peers.py table         results.jsonl as a table: ours, theirs, the error, their scatter and our seeds' scatter
+
+Each run adds a line to results.jsonl with the command that made it. --step and --seed are kept in it; --step 8e-6 is what the
+source used, 7 % of the Rayleigh time.
+"""
+import argparse
+import csv
+import datetime
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+import evaluate
+
+HERE = pathlib.Path(__file__).resolve().parent
+DATA = HERE.parent / "data"
+RESULTS = HERE / "results.jsonl"
+D = 0.0037  # m, the middle size of the wheat
+
+
+def rows(path):
+    with open(path, encoding="ascii") as lines:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def frame(folder, time):
+    """Columns x, y, z, r of the last frame at or before that time."""
+    with h5py.File(folder / "particles.h5", "r") as f:
+        spheres = f["particles/spheres"]
+        k = int(np.searchsorted(spheres["position/time"][:], time + 1e-9)) - 1
+        count = int(spheres["count/value"][k])
+        xyz = spheres["position/value"][k, :count]
+        return xyz[:, 0], xyz[:, 1], xyz[:, 2], spheres["radius/value"][k, :count].astype(float)
+
+
+def run_case(options, case, changes, folder):
+    command = [options.calx, "run", str(HERE / "cases" / case), "-o", str(folder), "--overwrite", "--quiet", "--threads",
+               str(options.threads), "--seed", str(options.seed)]
+    for pointer, value in changes.items():
+        command += ["--set", f"{pointer}={value}"]
+    subprocess.run(command, check=True)
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def wheat_changes(options, row):
+    at = "/contacts/0/parameters/"
+    return {at + "friction": row["mu"], at + "rolling_friction": row["mu_r"], at + "restitution": row["restitution"],
+            "/time/step": options.step}
+
+
+def lift(options, number, folder):
+    row = rows(DATA / "wheat" / "cylinder_lift.csv")[number - 1]
+    summary = run_case(options, "wheat_lift.json", wheat_changes(options, row), folder)
+    settled, end = frame(folder, 0.4), frame(folder, summary["time"])
+    density = evaluate.column_density(settled[2], settled[3], 1400, D, np.pi * 0.04**2)
+    own = summary["sensors"]["angle of repose"]["last"]
+    return [{"figure": "angle_deg", "ours": evaluate.pile_angle(*end, D), "theirs": row["angle_deg"], "their_sd": row["angle_sd_deg"],
+             "sensor": own["angle_deg"], "sensor_sd": own["sd_deg"]},
+            {"figure": "bulk_density_kg_m3", "ours": density, "theirs": row["bulk_density_kg_m3"], "their_sd": 4.0}], summary
+
+
+def discharge(options, number, folder):
+    row = rows(DATA / "wheat" / "discharge.csv")[number - 1]
+    summary = run_case(options, "wheat_discharge.json", wheat_changes(options, row), folder)
+    with open(folder / "series" / "mass out.csv", encoding="ascii") as lines:
+        table = list(csv.DictReader(lines))
+    time, mass = (np.array([float(r[name]) for r in table]) for name in ("time_s", "mass_kg"))
+    sensor = summary["sensors"]["discharge"]["last"]
+    return [{"figure": "rate_g_s", "ours": 1e3 * evaluate.rate(time, mass), "theirs": row["rate_g_s"],
+             "their_sd": row["rate_sd_g_s"], "sensor": 1e3 * sensor["rate_kg_s"], "beverloo": 1e3 * sensor["beverloo_kg_s"]}], summary
+
+
+def surface_errors(ours, theirs, radius):
+    """RMS distance along z over the columns both have, m, and the area between the curves inside sqrt(0.6) R, m2."""
+    inside = (theirs[:, 0] >= ours[0].min()) & (theirs[:, 0] <= ours[0].max())
+    difference = np.interp(theirs[inside, 0], *ours) - theirs[inside, 1]
+    core = np.hypot(theirs[inside, 0], theirs[inside, 1]) < np.sqrt(0.6) * radius
+    step = np.gradient(theirs[inside, 0])
+    return float(np.sqrt(np.mean(difference**2))), float(np.sum(np.abs(difference * step)[core]))
+
+
+def drum(options, rpm, folder):
+    summary = run_case(options, "granudrum.json",
+                       {"/contacts/0/parameters/friction": options.friction,
+                        "/contacts/0/parameters/rolling_friction": options.rolling_friction,
+                        "/sources/0/count": options.pellets, "/time/step": options.step,
+                        "/motions/turn/parameters/duration": 25 * 60 / rpm}, folder)
+    last = summary["sensors"]["surface"]["last"]
+    given = next(r for r in rows(DATA / "granudrum" / "free_surface_summary.csv") if r["rpm"] == rpm)
+    curve = next(c for c in json.loads((folder / "fields.json").read_text(encoding="utf-8"))["curves"] if c["name"] == "surface")
+    table = np.array([[r["x_mm"], r["z_mm"]] for r in rows(DATA / "granudrum" / "free_surface_15_45rpm.csv") if r["rpm"] == rpm])
+    rms, area = surface_errors((np.array(curve["x"]), np.array(curve["y"])), table * 1e-3, 0.042)
+    extra = {"rms_mm": 1e3 * rms, "area_mm2": 1e6 * area, "fill_ours": last["fill_1"], "fill_theirs": given["dark_area_fraction_r_lt_0.96R"],
+             "friction": options.friction, "rolling_friction": options.rolling_friction, "pellets": options.pellets}
+    return [{"figure": "near_angle_deg", "ours": last["angle_deg"], "theirs": given["angle_deg_absx_lt_12mm"], "their_sd": None, **extra},
+            {"figure": "far_angle_deg", "ours": last["far_deg"], "theirs": given["angle_deg_absx_lt_25mm"], "their_sd": None, **extra}], summary
+
+
+def one(options, kind, number):
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(options.keep or scratch) / f"{kind}-{number}-seed{options.seed}"
+        found, summary = {"lift": lift, "discharge": discharge, "drum": drum}[kind](options, number, folder)
+    for figure in found:
+        line = {"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), "point": f"{kind} {number}",
+                "seed": options.seed, "step": summary["time_step"], "particles": summary["particles"], "git": summary["provenance"]["git"],
+                "command": "peers.py " + " ".join(options.words), "note": options.note, **figure}
+        if options.write:
+            with open(RESULTS, "a", encoding="ascii") as out:
+                out.write(json.dumps(line) + "\n")
+        print(json.dumps(line), flush=True)
+
+
+def table():
+    """One line a point and figure: mean over seeds and steps."""
+    groups = {}
+    for line in RESULTS.read_text(encoding="ascii").splitlines():
+        r = json.loads(line)
+        groups.setdefault((r["point"], r["figure"]), []).append(r)
+    print("| point | figure | Calx | sd of our seeds (n) | source | sd of its seeds | difference |")
+    print("|---|---|---|---|---|---|---|")
+    for (point, figure), found in sorted(groups.items()):
+        ours = [r["ours"] for r in found]
+        mean, theirs, sd = statistics.mean(ours), found[0]["theirs"], found[0]["their_sd"]
+        spread = f"{statistics.stdev(ours):.2f} ({len(ours)})" if len(ours) > 1 else f"- ({len(ours)})"
+        share = "" if figure.endswith("_deg") else f" ({100 * (mean - theirs) / theirs:+.1f} %)"
+        print(f"| {point} | {figure} | {mean:.2f} | {spread} | {theirs:.2f} | {'-' if sd is None else format(sd, '.2f')} "
+              f"| {mean - theirs:+.2f}{share} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", choices=["lift", "discharge", "drum", "all", "table"])
+    parser.add_argument("number", nargs="?", type=int)
+    parser.add_argument("--calx", default=os.environ.get("CALX", str(HERE.parent.parent / "build/release/bin/calx")))
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--step", type=float, default=8e-6, help="s")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--keep", help="folder that keeps the runs")
+    parser.add_argument("--note", default="")
+    parser.add_argument("--friction", type=float, default=0.5, help="drum only")
+    parser.add_argument("--rolling-friction", type=float, default=0.1, help="drum only")
+    parser.add_argument("--pellets", type=int, default=30000, help="drum only")
+    parser.add_argument("--dry", dest="write", action="store_false", help="print, do not add to results.jsonl")
+    options = parser.parse_args()
+    options.words = sys.argv[1:]
+    if options.kind == "table":
+        return table()
+    if options.kind == "all":
+        for kind, name in (("lift", "cylinder_lift.csv"), ("discharge", "discharge.csv")):
+            for number in range(1, len(rows(DATA / "wheat" / name)) + 1):
+                one(options, kind, number)
+        return None
+    if options.number is None:
+        parser.error(f"{options.kind} needs a number")
+    return one(options, options.kind, options.number)
+
+
+if __name__ == "__main__":
+    main()
