@@ -2,6 +2,7 @@
 // drum, and whether the bed moved quasi-statically. Drawn for sensors by their kind, whatever the case.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "report/sections.hpp"
 #include "report/units.hpp"
@@ -15,6 +16,13 @@ const CurveResult* curve_of(const RunFolder& run, const std::string& sensor, con
   for (const auto& [owner, curve] : run.curves)
     if (owner == sensor && curve.name == name) return &curve;
   return nullptr;
+}
+
+/// Value of the last row, NaN where that row has none: the curves are those of the same moment.
+double last_row(const SensorSeries& s, const std::string& column) {
+  const int k = s.column(column);
+  return k < 0 || s.time.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                 : s.values[static_cast<std::size_t>(k)].back();
 }
 
 double largest(const std::vector<double>& values) {
@@ -49,13 +57,13 @@ std::string discharge_chart(Page& page, const RunFolder& run, const SensorSeries
   add(chart, mass, ChartSeries::Style::line, "discharged", 0, 1, unit.factor);
   add(chart, curve_of(run, s.name, "middle half"), ChartSeries::Style::line, "fitted rate", 1, 1, unit.factor);
   add(chart, curve_of(run, s.name, "Beverloo"), ChartSeries::Style::dashed, "Beverloo, same grains", 2, 1, unit.factor);
-  const auto last = [&](const char* column) { return last_value(s, column); };
+  const auto last = [&](const char* column) { return last_row(s, column); };
   chart.caption = format_quantity(last("mass_kg"), "kg") + " discharged, " +
                   format_quantity(last("retained_kg"), "kg") + " retained.";
   if (std::isfinite(last("rate_kg_s"))) {
     chart.caption += " Rate " + format_quantity(last("rate_kg_s"), "kg/s", 3) + plus_minus +
-                     format_quantity(last("rate_sd_kg_s"), "kg/s", 2) + " (sd of ten spans), R<sup>2</sup> " +
-                     format_number(last("r2_1"), 5) + ", longest pause " + format_quantity(last("pause_s"), "s", 2) +
+                     format_quantity(last("rate_sd_kg_s"), "kg/s", 3) + " (sd of ten spans), R<sup>2</sup> " +
+                     format_number(last("r2_1"), 5) + ", longest pause " + format_quantity(last("pause_s"), "s", 3) +
                      ". Beverloo's estimate for grains of " + format_quantity(last("grain_m"), "m", 3) +
                      " at a bulk density of " + format_quantity(last("density_kg_m3"), "kg/m^3", 4) + ": " +
                      format_quantity(last("beverloo_kg_s"), "kg/s", 3) + ", ratio " +
@@ -72,16 +80,20 @@ std::string pile_charts(Page& page, const RunFolder& run, const SensorSeries& s)
   chart.title = s.name + ": profile and fitted flank";
   const Quantity along = quantity_of(profile->x_name);
   chart.x = {along.title, unit.unit, false, {}};
-  chart.y = {"height", unit.unit, true, {}};
+  chart.y = {"height", unit.unit, false, {}};
   chart.equal_scales = true;
-  add(chart, profile, ChartSeries::Style::area, "profile", 2, unit.factor, unit.factor);
+  // Below the height 0 of the case an area down to 0 would lie above the pile.
+  const bool above = std::none_of(profile->y.begin(), profile->y.end(), [](double y) { return y < 0; });
+  chart.y.from_zero = above;
+  add(chart, profile, above ? ChartSeries::Style::area : ChartSeries::Style::line, "profile", 2, unit.factor,
+      unit.factor);
   for (const char* name : {"flank", "flank left", "flank right"})
     add(chart, curve_of(run, s.name, name), ChartSeries::Style::line, name, 1, unit.factor, unit.factor);
-  const double angle = last_value(s, "angle_deg"), sd = last_value(s, "sd_deg");
+  const double angle = last_row(s, "angle_deg"), sd = last_row(s, "sd_deg");
   if (std::isfinite(angle)) {
-    chart.caption = "Angle of repose " + angle_text(angle, sd) + " over " + format_number(last_value(s, "sectors_1")) +
-                    " sectors and " + format_number(last_value(s, "bins_1")) + " bins.";
-    const double check = last_value(s, "volume_angle_deg");
+    chart.caption = "Angle of repose " + angle_text(angle, sd) + " over " + format_number(last_row(s, "sectors_1")) +
+                    " sectors and " + format_number(last_row(s, "bins_1")) + " bins.";
+    const double check = last_row(s, "volume_angle_deg");
     if (std::isfinite(check))
       chart.caption += " Independent of any fit, from volume and base: " + format_number(check, 3) + degree + ".";
   } else {
@@ -119,17 +131,17 @@ std::string drum_chart(Page& page, const RunFolder& run, const SensorSeries& s) 
   add(chart, surface, ChartSeries::Style::line, "surface", 0, unit.factor, unit.factor);
   add(chart, curve_of(run, s.name, "near line"), ChartSeries::Style::dashed, "line, near", 1, unit.factor, unit.factor);
   add(chart, curve_of(run, s.name, "far line"), ChartSeries::Style::dashed, "line, far", 2, unit.factor, unit.factor);
-  const auto last = [&](const char* column) { return last_value(s, column); };
+  const auto last = [&](const char* column) { return last_row(s, column); };
   chart.caption = "Dynamic angle " + format_number(last("angle_deg"), 3) + degree + " near the middle (rms " +
-                  format_quantity(last("rms_m"), "m", 2) + "), " + format_number(last("far_deg"), 3) + degree +
-                  " over the wider part (rms " + format_quantity(last("far_rms_m"), "m", 2) + "). Where half of " +
+                  format_quantity(last("rms_m"), "m", 3) + "), " + format_number(last("far_deg"), 3) + degree +
+                  " over the wider part (rms " + format_quantity(last("far_rms_m"), "m", 3) + "). Where half of " +
                   format_number(last("frames_1")) + " frames show grains; dark share " +
                   format_number(100 * last("fill_1"), 3) + "\xc2\xa0%.";
   return page.chart(chart);
 }
 
 std::string quasi_static(const SensorSeries& s) {
-  const double number = last_value(s, "largest_1");
+  const double number = last_row(s, "largest_1");
   if (!std::isfinite(number)) return html_absent("Sensor " + s.name + ": no inertial number yet.");
   // Bounds of GDR MiDi 2004 (Eur. Phys. J. E 14, 341).
   const char* const what = number < 1e-3 ? "quasi-static (below 0.001)"

@@ -18,7 +18,6 @@ import os
 import pathlib
 import statistics
 import subprocess
-import sys
 import tempfile
 
 import h5py
@@ -110,6 +109,14 @@ def drum(options, rpm, folder):
             {"figure": "far_angle_deg", "ours": last["far_deg"], "theirs": given["angle_deg_absx_lt_25mm"], "their_sd": None, **extra}], summary
 
 
+def command_of(options, kind, number):
+    """What repeats the run, without folders of the machine."""
+    words = f"peers.py {kind} {number} --seed {options.seed} --step {options.step:g}"
+    if kind == "drum":
+        words += f" --friction {options.friction} --rolling-friction {options.rolling_friction} --pellets {options.pellets}"
+    return words
+
+
 def one(options, kind, number):
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(options.keep or scratch) / f"{kind}-{number}-seed{options.seed}"
@@ -117,7 +124,7 @@ def one(options, kind, number):
     for figure in found:
         line = {"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), "point": f"{kind} {number}",
                 "seed": options.seed, "step": summary["time_step"], "particles": summary["particles"], "git": summary["provenance"]["git"],
-                "command": "peers.py " + " ".join(options.words), "note": options.note, **figure}
+                "command": command_of(options, kind, number), "note": options.note, **figure}
         if options.write:
             with open(RESULTS, "a", encoding="ascii") as out:
                 out.write(json.dumps(line) + "\n")
@@ -156,7 +163,6 @@ def main():
     parser.add_argument("--pellets", type=int, default=30000, help="drum only")
     parser.add_argument("--dry", dest="write", action="store_false", help="print, do not add to results.jsonl")
     options = parser.parse_args()
-    options.words = sys.argv[1:]
     if options.kind == "table":
         return table()
     if options.kind == "all":
