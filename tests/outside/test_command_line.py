@@ -3,7 +3,7 @@ import json
 import re
 import unittest
 
-from calx import PLUGIN, PLUGINS, USAGE, CalxTest, cup, needs
+from calx import CASE, PLUGIN, PLUGINS, USAGE, CalxTest, cup, needs
 
 try:
     import jsonschema
@@ -133,6 +133,19 @@ class CommandLine(CalxTest):
         result = self.calx("check", self.write(cup()), "--set", "/sources/0/count=30", "--set", "/materials/glass/young=4e7")
         self.assertIn("about 30 particles", result.out)
         self.assertIn("young 4e+07", result.out)
+
+    def test_check_says_what_particle_scaling_changes(self):
+        case = self.write(cup({"/time/step": 1e-6, "/scale": {"factor": 2}}))
+        text = self.calx("check", case).out
+        for pattern in (r"(?m)^Scale: grains 2 times as large; kept: density, moduli, restitution, friction, strength of the bulk; "
+                        r"the given time step is 2 times that of the case$",
+                        r"(?m)^  ball: largest sphere 0\.002 m -> 0\.004 m in radius$", r"(?m)^Time step 2e-06 s \(given\)",
+                        r"about 8 particles", r"(?m)^  - Particle scaling: grains 2 times the size that the case draws"):
+            self.assertRegex(text, pattern)
+        wrong = self.calx("check", case, "--set", "/scale/factor=0")
+        self.assertEqual(wrong.code, CASE)
+        self.assertIn("/scale/factor: ", wrong.err)
+        self.assertNotIn("Scale", self.calx("check", self.write(cup())).out)
 
     def test_case_schema(self):
         schema = json.loads(self.calx("check", "--print-schema").out)

@@ -97,7 +97,8 @@ def drum(options, rpm, folder):
                        {"/contacts/0/parameters/friction": options.friction,
                         "/contacts/0/parameters/rolling_friction": options.rolling_friction,
                         "/sources/0/count": options.pellets, "/time/step": options.step,
-                        "/motions/turn/parameters/duration": 25 * 60 / rpm}, folder)
+                        "/motions/turn/parameters/duration": 25 * 60 / rpm,
+                        "/events/steady/when/after/delay": options.spin_up, "/time/end": 0.3 + options.spin_up + 0.3}, folder)
     last = summary["sensors"]["surface"]["last"]
     given = next(r for r in rows(DATA / "granudrum" / "free_surface_summary.csv") if r["rpm"] == rpm)
     curve = next(c for c in json.loads((folder / "fields.json").read_text(encoding="utf-8"))["curves"] if c["name"] == "surface")
@@ -114,6 +115,7 @@ def command_of(options, kind, number):
     words = f"peers.py {kind} {number} --seed {options.seed} --step {options.step:g}"
     if kind == "drum":
         words += f" --friction {options.friction} --rolling-friction {options.rolling_friction} --pellets {options.pellets}"
+        words += f" --spin-up {options.spin_up:g}"
     return words
 
 
@@ -161,6 +163,7 @@ def main():
     parser.add_argument("--friction", type=float, default=0.5, help="drum only")
     parser.add_argument("--rolling-friction", type=float, default=0.1, help="drum only")
     parser.add_argument("--pellets", type=int, default=30000, help="drum only")
+    parser.add_argument("--spin-up", type=float, default=1.5, help="drum only, s; then 0.3 s are averaged")
     parser.add_argument("--dry", dest="write", action="store_false", help="print, do not add to results.jsonl")
     options = parser.parse_args()
     if options.kind == "table":
