@@ -61,6 +61,8 @@ void check_same(const Outcome& a, const Outcome& b) {
   CHECK(a.digest == b.digest);
   CHECK(a.counters.touching == b.counters.touching);
   CHECK(a.counters.rebuilds == b.counters.rebuilds);
+  CHECK(a.counters.pair_entries == b.counters.pair_entries);
+  CHECK(a.counters.wall_entries == b.counters.wall_entries);
   CHECK(a.counters.largest_overlap == b.counters.largest_overlap);
   CHECK(a.energy.kinetic_translation == b.energy.kinetic_translation);
   CHECK(a.energy.kinetic_rotation == b.energy.kinetic_rotation);
