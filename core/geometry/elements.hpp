@@ -69,6 +69,19 @@ struct Elements {
   std::size_t count() const { return triangles.size() + segments.size(); }
 };
 
+/// A tree of boxes over the elements without pointers: parents before their children. After a box that is too far away
+/// `skip` is the next to look at, after any other the one behind it.
+struct FlatTree {
+  struct Node {
+    Box box;  // m
+    std::uint32_t skip = 0;
+    std::uint32_t first = 0, count = 0;  // of a leaf, in order; count 0: no leaf
+    std::uint32_t unused = 0;
+  };
+  std::vector<Node> nodes;
+  std::vector<std::uint32_t> order;  // elements
+};
+
 /// Rounding of a dot product of lengths up to the size is below 1e-14 of it; nearly degenerate triangles lose some
 /// digits more. 1e-10 leaves room and is far below any overlap that matters.
 constexpr double rounding_share = 1e-10;

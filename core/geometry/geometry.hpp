@@ -37,7 +37,8 @@ struct MeshFaults {
 
 namespace geometry {
 struct Elements;
-}
+struct FlatTree;
+}  // namespace geometry
 
 /// Triangles for pictures and VTK; surfaces of revolution are cut within the chord given.
 struct Tessellation {
@@ -79,6 +80,8 @@ class Surface {
   Tessellation tessellate(double chord) const;
   /// What closest() reads, for those who bring it to a device; see elements.hpp.
   const geometry::Elements& elements() const;
+  /// What gather() walks through, for the same.
+  geometry::FlatTree flat_tree() const;
 
  private:
   struct Impl;

@@ -89,6 +89,7 @@ void Surface::finish() {
 }
 
 const geometry::Elements& Surface::elements() const { return impl_->elements; }
+geometry::FlatTree Surface::flat_tree() const { return impl_->tree.flat(); }
 Box Surface::bounds() const { return impl_->bounds; }
 std::size_t Surface::element_count() const { return impl_->elements.count(); }
 MeshFaults Surface::faults() const { return impl_->faults; }

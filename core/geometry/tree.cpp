@@ -46,4 +46,26 @@ void Tree::split(std::uint32_t node, const std::vector<Box>& boxes, std::uint32_
   split(child + 1, boxes, first + half, count - half);
 }
 
+FlatTree Tree::flat() const {
+  FlatTree out;
+  out.order = order_;
+  if (!nodes_.empty()) append(0, out);
+  return out;
+}
+
+void Tree::append(std::uint32_t node, FlatTree& to) const {
+  const Node& own = nodes_[node];
+  const std::size_t at = to.nodes.size();
+  to.nodes.emplace_back();
+  to.nodes[at].box = own.box;
+  if (own.count > 0) {
+    to.nodes[at].first = own.first;
+    to.nodes[at].count = own.count;
+  } else {
+    append(own.first, to);
+    append(own.first + 1, to);
+  }
+  to.nodes[at].skip = static_cast<std::uint32_t>(to.nodes.size());
+}
+
 }  // namespace calx::geometry

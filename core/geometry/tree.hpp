@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/vec3.hpp"
+#include "geometry/elements.hpp"
 
 namespace calx::geometry {
 
@@ -11,6 +12,8 @@ class Tree {
  public:
   /// Splits at the median of the longest side until four or fewer boxes remain.
   void build(const std::vector<Box>& boxes);
+
+  FlatTree flat() const;
 
   /// Calls visit(element) for every element whose leaf box is within reach of p.
   template <class Visit>
@@ -37,6 +40,7 @@ class Tree {
     Box box;
     std::uint32_t first = 0, count = 0;  // leaf: elements in order_; else count 0, children first and first + 1
   };
+  void append(std::uint32_t node, FlatTree& to) const;
   static double distance2(const Box& b, const Vec3& p);
   void split(std::uint32_t node, const std::vector<Box>& boxes, std::uint32_t first, std::uint32_t count);
   std::vector<Node> nodes_;

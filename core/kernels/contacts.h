@@ -9,7 +9,7 @@ KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT sph
        GLOBAL const double* RESTRICT law_numbers, GLOBAL real* RESTRICT out, GLOBAL double* RESTRICT share,
        GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 e = ITEM;
-  if (e >= n.entries) return;
+  if (e >= n.entries || flags[FLAG_STOP]) return;
   const u32 i = first[e], j = second[e];
   GLOBAL const record* a = spheres + i;
   GLOBAL const record* b = spheres + j;

@@ -11,6 +11,27 @@ typedef struct chunk {
 
 #define SPAN 64u
 
+/* One item: the table of chunks of chunk_length particles, and the numbers of all spans of particles and of spheres. */
+KERNEL(make_chunks, u32 particles, u32 chunk_length, u32 chunks, u32 clumps, GLOBAL const u32* RESTRICT first_sphere,
+       GLOBAL chunk* RESTRICT out, GLOBAL u32* RESTRICT spans) {
+  if (ITEM > 0) return;
+  u32 particle_spans = 0, sphere_spans = 0;
+  for (u32 c = 0; c < chunks; ++c) {
+    chunk k;
+    k.first_particle = c * chunk_length;
+    k.last_particle = MIN(particles, k.first_particle + chunk_length);
+    k.first_sphere = clumps ? first_sphere[k.first_particle] : k.first_particle;
+    k.last_sphere = clumps ? first_sphere[k.last_particle] : k.last_particle;
+    k.first_particle_span = particle_spans;
+    k.first_sphere_span = sphere_spans;
+    particle_spans += (k.last_particle - k.first_particle + SPAN - 1) / SPAN;
+    sphere_spans += (k.last_sphere - k.first_sphere + SPAN - 1) / SPAN;
+    out[c] = k;
+  }
+  spans[0] = particle_spans;
+  spans[1] = sphere_spans;
+}
+
 /* Sums of a span or chunk. */
 #define SUM_ELASTIC 0u
 #define SUM_FRICTION 1u
@@ -41,9 +62,10 @@ typedef struct chunk {
 
 KERNEL(fold_pairs, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks, GLOBAL const u32* RESTRICT first,
        GLOBAL const u32* RESTRICT second, GLOBAL const u32* RESTRICT row_first, GLOBAL const u8* RESTRICT touching,
-       GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
+       GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out,
+       GLOBAL const u32* RESTRICT flags) {
   const u32 span = ITEM;
-  if (span >= spans) return;
+  if (span >= spans || flags[FLAG_STOP]) return;
   CHUNK_OF_SPAN(first_sphere_span)
   const u32 sphere = chunks[c].first_sphere + (span - chunks[c].first_sphere_span) * SPAN;
   const u32 from = row_first[sphere], to = row_first[MIN(chunks[c].last_sphere, sphere + SPAN)];
@@ -77,9 +99,10 @@ KERNEL(fold_pairs, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunk
 KERNEL(fold_walls, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks,
        GLOBAL const u32* RESTRICT wall_first, GLOBAL const u32* RESTRICT row_sphere,
        GLOBAL const u32* RESTRICT row_part, GLOBAL const u32* RESTRICT counts, GLOBAL const double* RESTRICT values,
-       GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
+       GLOBAL const double* RESTRICT share, GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out,
+       GLOBAL const u32* RESTRICT flags) {
   const u32 span = ITEM;
-  if (span >= spans) return;
+  if (span >= spans || flags[FLAG_STOP]) return;
   CHUNK_OF_SPAN(first_sphere_span)
   const u32 sphere = chunks[c].first_sphere + (span - chunks[c].first_sphere_span) * SPAN;
   const u32 from = wall_first[sphere], to = wall_first[MIN(chunks[c].last_sphere, sphere + SPAN)];
@@ -125,9 +148,9 @@ KERNEL(fold_walls, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunk
 
 /* Columns of a span: the energies of its particles. */
 KERNEL(fold_particles, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunks,
-       GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out) {
+       GLOBAL const double* RESTRICT energy, GLOBAL double* RESTRICT out, GLOBAL const u32* RESTRICT flags) {
   const u32 span = ITEM;
-  if (span >= spans) return;
+  if (span >= spans || flags[FLAG_STOP]) return;
   CHUNK_OF_SPAN(first_particle_span)
   const u32 from = chunks[c].first_particle + (span - chunks[c].first_particle_span) * SPAN;
   const u32 to = MIN(chunks[c].last_particle, from + SPAN);
@@ -154,9 +177,9 @@ FN void add_span(GLOBAL double* sums, GLOBAL const double* span) {
 /* halves: energies of rotation stand for whole ones before and after the kick, of which half counts. */
 KERNEL(fold_chunks, step_numbers n, u32 halves, u32 sphere_spans, u32 particle_spans,
        GLOBAL const chunk* RESTRICT chunks, GLOBAL const double* RESTRICT pairs, GLOBAL const double* RESTRICT walls,
-       GLOBAL const double* RESTRICT particles, GLOBAL double* RESTRICT out) {
+       GLOBAL const double* RESTRICT particles, GLOBAL double* RESTRICT out, GLOBAL const u32* RESTRICT flags) {
   const u32 c = ITEM;
-  if (c >= n.chunks) return;
+  if (c >= n.chunks || flags[FLAG_STOP]) return;
   const u32 width = SUMS + 6u * n.parts, last = c + 1 == n.chunks;
   GLOBAL double* sums = out + (u64)c * width;
   for (u32 k = 0; k < width; ++k) sums[k] = 0.0;
@@ -196,6 +219,70 @@ KERNEL(fold_chunks, step_numbers n, u32 halves, u32 sphere_spans, u32 particle_s
   }
   if (halves) sums[SUM_ROTATION] += 0.5 * (before + after);
   sums[SUM_GRAVITY_WORK] += (n.gravity_x * px + n.gravity_y * py + n.gravity_z * pz) * n.dt;
+}
+
+/* Of the first half of verlet: the work of gravity of each chunk. */
+KERNEL(fold_drift, step_numbers n, u32 particle_spans, GLOBAL const chunk* RESTRICT chunks,
+       GLOBAL const double* RESTRICT particles, GLOBAL double* RESTRICT out, GLOBAL const u32* RESTRICT flags) {
+  const u32 c = ITEM;
+  if (c >= n.chunks || flags[FLAG_STOP]) return;
+  const u32 end = c + 1 == n.chunks ? particle_spans : chunks[c + 1].first_particle_span;
+  double work = 0.0;
+  for (u32 s = chunks[c].first_particle_span; s < end; ++s) work += particles[(u64)s * PARTICLE_ENERGIES];
+  out[(u64)c * (SUMS + 6u * n.parts)] = work;
+}
+
+/* Totals: the sums of a step over all chunks, where friction, damping, plastic and all work go on adding up; then the
+ * loads; then these. */
+#define TOTAL_LARGEST(n) (SUMS + 6u * (n).parts)      /* overlap of all steps, share of the radius */
+#define TOTAL_WRAPPED(n) (SUMS + 6u * (n).parts + 1u) /* J that periodic faces took from gravity; see EngineEnergy */
+
+/* One item for each sum and load: chunks in order. */
+KERNEL(close_sums, step_numbers n, GLOBAL const double* RESTRICT chunk_sums, GLOBAL double* RESTRICT totals,
+       GLOBAL u32* RESTRICT flags) {
+  const u32 k = ITEM, width = SUMS + 6u * n.parts;
+  if (k >= width || flags[FLAG_STOP]) return;
+  if (k == SUM_LARGEST_I || k == SUM_LARGEST_J) return;
+  if (k == SUM_LARGEST) {
+    double worst = 0.0;
+    u32 where = n.chunks;
+    for (u32 c = 0; c < n.chunks; ++c) {
+      const double value = chunk_sums[(u64)c * width + k];
+      if (!(value > worst)) continue;
+      worst = value;
+      where = c;
+    }
+    totals[SUM_LARGEST] = worst;
+    totals[SUM_LARGEST_I] = where < n.chunks ? chunk_sums[(u64)where * width + SUM_LARGEST_I] : 0.0;
+    totals[SUM_LARGEST_J] = where < n.chunks ? chunk_sums[(u64)where * width + SUM_LARGEST_J] : 0.0;
+    if (worst > totals[TOTAL_LARGEST(n)]) totals[TOTAL_LARGEST(n)] = worst;
+    if (worst > n.overlap_limit) ATOMIC_OR(flags + FLAG_OVERLAP, 1u);
+    return;
+  }
+  const u32 goes_on = k == SUM_FRICTION || k == SUM_DAMPING || k == SUM_PLASTIC || k == SUM_WALL_WORK ||
+                      k == SUM_GRAVITY_WORK || k == SUM_FORCE_WORK;
+  double sum = goes_on ? totals[k] : 0.0;
+  for (u32 c = 0; c < n.chunks; ++c) sum += chunk_sums[(u64)c * width + k];
+  totals[k] = k == SUM_GRAVITY ? sum + totals[TOTAL_WRAPPED(n)] : sum;
+}
+
+/* One item: the end of a step. */
+KERNEL(close_step, GLOBAL u32* RESTRICT flags) {
+  if (ITEM > 0 || flags[FLAG_STOP]) return;
+  flags[FLAG_DONE] += 1u;
+  flags[FLAG_DRIFTED] = 0u;
+  flags[FLAG_STOP] = flags[FLAG_STALE] | flags[FLAG_GUARD] | flags[FLAG_MISSING_LAW] | flags[FLAG_OVERLAP];
+}
+
+/* One item: the end of the first half of a step of verlet. */
+KERNEL(close_drift, step_numbers n, GLOBAL const double* RESTRICT chunk_sums, GLOBAL double* RESTRICT totals,
+       GLOBAL u32* RESTRICT flags) {
+  if (ITEM > 0 || flags[FLAG_STOP]) return;
+  double work = totals[SUM_GRAVITY_WORK];
+  for (u32 c = 0; c < n.chunks; ++c) work += chunk_sums[(u64)c * (SUMS + 6u * n.parts)];
+  totals[SUM_GRAVITY_WORK] = work;
+  flags[FLAG_DRIFTED] = 1u;
+  flags[FLAG_STOP] = flags[FLAG_STALE];
 }
 
 #endif

@@ -6,8 +6,8 @@
 #ifndef CALX_MOTION_H
 #define CALX_MOTION_H
 
-/* in_entry: entries of which a sphere is the second, those of its own chunk from in_first[s] to in_middle[s], those of
- * chunks before it up to in_first[s + 1]. Macros, because w is of either precision. */
+/* in_entry: entries of which a sphere is the second, rising; those of chunks before its own from in_first[s] to
+ * in_middle[s], those of its own up to in_first[s + 1]. Macros, because w is of either precision. */
 #define TAKE_REACTIONS(w, from, to)   \
   for (u32 k = from; k < to; ++k) {   \
     const u32 e = in_entry[k];        \
@@ -20,7 +20,7 @@
     w.tz -= pair_out[8 * stride + e]; \
   }
 #define ADD_OWN_ENTRIES(w)                                \
-  TAKE_REACTIONS(w, in_first[s], in_middle[s])            \
+  TAKE_REACTIONS(w, in_middle[s], in_first[s + 1])        \
   for (u32 e = row_first[s]; e < row_first[s + 1]; ++e) { \
     if (!touching[e]) continue;                           \
     w.fx += pair_out[e];                                  \
@@ -48,17 +48,18 @@ FN void add_walls(wrench* w, u32 first, u32 last, GLOBAL const u32* counts, GLOB
   step_numbers n, GLOBAL const u32 *RESTRICT row_first, GLOBAL const u32 *RESTRICT in_first,                         \
       GLOBAL const u32 *RESTRICT in_middle, GLOBAL const u32 *RESTRICT in_entry, GLOBAL const u8 *RESTRICT touching, \
       GLOBAL const scalar *RESTRICT pair_out, GLOBAL const u32 *RESTRICT wall_first,                                 \
-      GLOBAL const u32 *RESTRICT wall_counts, GLOBAL const double *RESTRICT wall_out, GLOBAL wrench *RESTRICT sums
+      GLOBAL const u32 *RESTRICT wall_counts, GLOBAL const double *RESTRICT wall_out, GLOBAL wrench *RESTRICT sums,  \
+      GLOBAL const u32 *RESTRICT flags
 
 KERNEL(sum_contacts, SUM_ARGUMENTS(double)) {
   const u32 s = ITEM;
-  if (s >= n.spheres) return;
+  if (s >= n.spheres || flags[FLAG_STOP]) return;
   const u64 stride = n.entries;
   wrench w;
   w.fx = w.fy = w.fz = w.tx = w.ty = w.tz = 0.0;
   ADD_OWN_ENTRIES(w)
   add_walls(&w, wall_first[s], wall_first[s + 1], wall_counts, wall_out, (u64)n.wall_rows * WALL_CONTACTS);
-  TAKE_REACTIONS(w, in_middle[s], in_first[s + 1])
+  TAKE_REACTIONS(w, in_first[s], in_middle[s])
   sums[s] = w;
 }
 
@@ -68,7 +69,7 @@ typedef struct lean_wrench {
 } lean_wrench;
 KERNEL(sum_contacts_mixed, SUM_ARGUMENTS(float)) {
   const u32 s = ITEM;
-  if (s >= n.spheres) return;
+  if (s >= n.spheres || flags[FLAG_STOP]) return;
   const u64 stride = n.entries;
   lean_wrench own;
   own.fx = own.fy = own.fz = own.tx = own.ty = own.tz = 0.0f;
@@ -76,7 +77,7 @@ KERNEL(sum_contacts_mixed, SUM_ARGUMENTS(float)) {
   wrench w;
   w.fx = w.fy = w.fz = w.tx = w.ty = w.tz = 0.0;
   add_walls(&w, wall_first[s], wall_first[s + 1], wall_counts, wall_out, (u64)n.wall_rows * WALL_CONTACTS);
-  TAKE_REACTIONS(w, in_middle[s], in_first[s + 1])
+  TAKE_REACTIONS(w, in_first[s], in_middle[s])
   w.fx += own.fx;
   w.fy += own.fy;
   w.fz += own.fz;
@@ -158,7 +159,7 @@ KERNEL(move_spheres, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL const 
        GLOBAL const wrench* RESTRICT added, GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin,
        GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
-  if (p >= n.particles) return;
+  if (p >= n.particles || flags[FLAG_STOP]) return;
   GLOBAL record* b = body + p;
   const wrench w = with_forces(sums[p], added, p, b, energy, n);
   const u64 stride = n.particles;
@@ -242,30 +243,6 @@ FN turning turn_body(quat q, vec3 i, vec3 w, vec3 torque, double dt, double kick
   return t;
 }
 
-FN void place_spheres(GLOBAL const record* b, quat turn, GLOBAL record* spheres, GLOBAL const vec3* arms, u32 first,
-                      u32 last) {
-  const vec3 spin = spin_of(b);
-  for (u32 k = first; k < last; ++k) {
-    const vec3 arm = rotate3(turn, arms[k]), v = cross3_f64(spin, arm);
-    GLOBAL record* m = spheres + k;
-    m->x = b->x + arm.x;
-    m->y = b->y + arm.y;
-    m->z = b->z + arm.z;
-    m->vx = b->vx + v.x;
-    m->vy = b->vy + v.y;
-    m->vz = b->vz + v.z;
-    m->wx = spin.x;
-    m->wy = spin.y;
-    m->wz = spin.z;
-  }
-}
-
-FN void set_spin(GLOBAL record* b, vec3 w) {
-  b->wx = w.x;
-  b->wy = w.y;
-  b->wz = w.z;
-}
-
 /* Clumps: sums of their spheres, midpoint rule for the turn, spheres put where the bodies are. inertia: principal
  * moments, kg m^2; arms: of spheres, m, principal frame. */
 KERNEL(move_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record* RESTRICT spheres,
@@ -274,7 +251,7 @@ KERNEL(move_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record*
        GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
        GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
-  if (p >= n.particles) return;
+  if (p >= n.particles || flags[FLAG_STOP]) return;
   GLOBAL record* b = body + p;
   const u32 first = first_sphere[p], last = first_sphere[p + 1];
   const wrench w = with_forces(clump_wrench(b, spheres, sums, first, last), added, p, b, energy, n);
@@ -314,7 +291,7 @@ KERNEL(drift_spheres, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL const
        GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy,
        GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
-  if (p >= n.particles) return;
+  if (p >= n.particles || flags[FLAG_STOP]) return;
   GLOBAL record* b = body + p;
   GLOBAL const wrench* w = sums + p;
   drift(b, w, energy, p, n);
@@ -328,7 +305,7 @@ KERNEL(drift_clumps, step_numbers n, GLOBAL record* RESTRICT body, GLOBAL record
        GLOBAL const vec3* RESTRICT arms, GLOBAL const wrench* RESTRICT sums, GLOBAL const vec3* RESTRICT listed,
        GLOBAL const double* RESTRICT margin, GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
-  if (p >= n.particles) return;
+  if (p >= n.particles || flags[FLAG_STOP]) return;
   GLOBAL record* b = body + p;
   GLOBAL const wrench* w = sums + p;
   drift(b, w, energy, p, n);
@@ -347,7 +324,7 @@ KERNEL(kick_particles, step_numbers n, u32 clumps, GLOBAL record* RESTRICT body,
        GLOBAL wrench* RESTRICT sums, GLOBAL const vec3* RESTRICT listed, GLOBAL const double* RESTRICT margin,
        GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 p = ITEM;
-  if (p >= n.particles) return;
+  if (p >= n.particles || flags[FLAG_STOP]) return;
   GLOBAL record* b = body + p;
   const u32 first = clumps ? first_sphere[p] : p, last = clumps ? first_sphere[p + 1] : p + 1;
   wrench w = sphere_sums[p];

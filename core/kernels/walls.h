@@ -2,14 +2,13 @@
 #ifndef CALX_WALLS_H
 #define CALX_WALLS_H
 
-/* A part at the instant of the contacts. */
+/* A part at the instant of the contacts; tables hold the parts of the steps to come one after the other. */
 typedef struct part_state {
   quat turn;
   vec3 shift, centre, velocity, spin;
   u32 shape, material;
 } part_state;
 
-#define WALL_CONTACTS 4u
 /* A contact keeps its history while its normal turns by less than about 45 degrees in one step. */
 #define SAME_CONTACT 0.7
 /* Values of a contact, in columns 4 * wall_rows apart, contacts of a row in the order found: force and torque on the
@@ -25,9 +24,9 @@ KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
        GLOBAL double* RESTRICT out, GLOBAL double* RESTRICT share, GLOBAL double* RESTRICT energy,
        GLOBAL u32* RESTRICT flags) {
   const u32 row = ITEM;
-  if (row >= n.wall_rows) return;
+  if (row >= n.wall_rows || flags[FLAG_STOP]) return;
   GLOBAL const record* a = spheres + row_sphere[row];
-  GLOBAL const part_state* part = parts + row_part[row];
+  GLOBAL const part_state* part = parts + ((u64)flags[FLAG_DONE] * n.part_stride + row_part[row]);
   GLOBAL const shape* s = shapes + part->shape;
   const vec3 centre = position_of(a);
   const vec3 at_part = rotate3(conjugate(part->turn), sub3_f64(centre, part->shift));

@@ -20,7 +20,8 @@ typedef struct quat {
 
 /* Numbers of a step. */
 typedef struct step_numbers {
-  double dt, time;                        /* s */
+  double dt;                              /* s */
+  double overlap_limit;                   /* of the radius */
   double gravity_x, gravity_y, gravity_z; /* m/s^2 */
   double low_x, low_y, low_z;             /* m, of the domain */
   double high_x, high_y, high_z;
@@ -30,13 +31,20 @@ typedef struct step_numbers {
   u32 materials, columns; /* columns of history */
   u32 ledger;             /* energies are kept */
   u32 forces;             /* there are forces on single particles */
-  u32 spare;
+  u32 part_stride;        /* from the parts of a step to those of the next: parts, or 0 where none moves */
 } step_numbers;
 
-/* Places of the flags that a step raises. */
+/* Contacts of one row of the wall list, at most. */
+#define WALL_CONTACTS 4u
+
+/* Flags. Steps follow each other without the host until STOP is raised, which ends all kernels after it at once. */
 #define FLAG_STALE 0u
 #define FLAG_GUARD 1u       /* a number that is not finite, or a particle outside */
 #define FLAG_MISSING_LAW 2u /* 1 + number of the material pair */
+#define FLAG_OVERLAP 3u     /* an overlap beyond the limit */
+#define FLAG_DONE 4u        /* steps done since the host looked */
+#define FLAG_DRIFTED 5u     /* verlet: the step after those has had its first half */
+#define FLAG_STOP 6u
 
 typedef struct wrench {
   double fx, fy, fz, tx, ty, tz; /* N, N m */
@@ -60,6 +68,29 @@ FN vec3 rotate3(quat q, vec3 v) {
   const vec3 u = make3_f64(q.x, q.y, q.z);
   const vec3 t = scale3_f64(2.0, cross3_f64(u, v));
   return add3_f64(add3_f64(v, scale3_f64(q.w, t)), cross3_f64(u, t));
+}
+
+FN void set_spin(GLOBAL record* b, vec3 w) {
+  b->wx = w.x;
+  b->wy = w.y;
+  b->wz = w.z;
+}
+
+/* Puts the spheres of a clump where its body is. arms: of the spheres, m, principal frame. */
+FN void place_spheres(GLOBAL const record* b, quat turn, GLOBAL record* spheres, GLOBAL const vec3* arms, u32 first,
+                      u32 last) {
+  const vec3 spin = spin_of(b);
+  for (u32 k = first; k < last; ++k) {
+    const vec3 arm = rotate3(turn, arms[k]), v = cross3_f64(spin, arm);
+    GLOBAL record* m = spheres + k;
+    m->x = b->x + arm.x;
+    m->y = b->y + arm.y;
+    m->z = b->z + arm.z;
+    m->vx = b->vx + v.x;
+    m->vy = b->vy + v.y;
+    m->vz = b->vz + v.z;
+    set_spin(m, spin);
+  }
 }
 
 /* Shortest image of a difference along one direction. */

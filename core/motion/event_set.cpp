@@ -1,5 +1,6 @@
 // event_set.cpp: when things happen. Asked once per step with some tens of events; only cheap conditions (time, cycle,
 // after) are read in every step.
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -113,6 +114,34 @@ std::vector<std::string> EventSet::update(double t, const EventView& view) {
     }
     if (names.size() == before) return names;  // nothing that another event could follow
   }
+}
+
+bool EventSet::still(const ConditionSettings& c, double before, double t,
+                     const std::function<double(const std::string&, double)>& cycles) const {
+  switch (c.kind) {
+    case Kind::time:
+      return (before >= c.time) == (t >= c.time);
+    case Kind::after: {
+      const double due = time_of(c.event) + c.time;
+      return !fired(c.event) || (before >= due) == (t >= due);
+    }
+    case Kind::cycle:
+      return (cycles(c.motion, before) >= c.value) == (cycles(c.motion, t) >= c.value);
+    case Kind::mass:
+    case Kind::count:
+    case Kind::settled:
+      return t < next_check_;
+    case Kind::all:
+    case Kind::any:
+      break;
+  }
+  return std::all_of(c.parts.begin(), c.parts.end(),
+                     [&](const ConditionSettings& part) { return still(part, before, t, cycles); });
+}
+
+bool EventSet::still(double before, double t, const std::function<double(const std::string&, double)>& cycles) const {
+  return std::all_of(events_.begin(), events_.end(),
+                     [&](const Entry& e) { return e.fired_at >= 0 || still(e.settings.when, before, t, cycles); });
 }
 
 void EventSet::fire(const std::string& name, double t) {

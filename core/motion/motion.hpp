@@ -1,6 +1,7 @@
 // motion.hpp: where parts are at a time, and when things happen: poses, events and stages.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,6 +91,9 @@ class EventSet {
   EventSet(const std::vector<EventSettings>& events, double check_interval);
   /// Names of events that fire at time t. [main]
   std::vector<std::string> update(double t, const EventView& view);
+  /// Whether an update at time t, s, after one at `before` without any in between, would look at nothing but the clock
+  /// and find every answer as it was. cycles: of a motion at a time, as EventView::cycles_of.
+  bool still(double before, double t, const std::function<double(const std::string&, double)>& cycles) const;
   /// Fires an event that has no condition of its own (stages announce themselves so).
   void fire(const std::string& name, double t);
   bool fired(const std::string& name) const;
@@ -114,6 +118,8 @@ class EventSet {
   Answer answer_all(const ConditionSettings& c, std::size_t leaf, Question& q) const;
   Answer answer_any(const ConditionSettings& c, std::size_t leaf, Question& q) const;
   Answer answer_settled(const ConditionSettings& c, Settling& leaf, const Question& q) const;
+  bool still(const ConditionSettings& c, double before, double t,
+             const std::function<double(const std::string&, double)>& cycles) const;
   std::vector<Entry> events_;
   std::vector<std::pair<std::string, double>> announced_;
   double check_interval_ = 0, next_check_ = 0;

@@ -19,6 +19,13 @@ ReachClasses::ReachClasses(double smallest, double largest) : first_(key(smalles
   count_ = static_cast<std::uint32_t>(span >> shift_) + 1;
 }
 
+double ReachClasses::lower_bound(std::uint32_t number) const {
+  const std::uint64_t bits = (first_ + (std::uint64_t{number} << shift_)) << 49;
+  double reach;
+  std::memcpy(&reach, &bits, sizeof reach);
+  return reach;
+}
+
 namespace {
 
 // Instructions, counted on x86-64-v3; only their ratios matter.

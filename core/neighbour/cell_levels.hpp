@@ -1,4 +1,4 @@
-// cell_levels.hpp: which spheres share a grid. Private to neighbour/.
+// cell_levels.hpp: which spheres share a grid.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,6 +17,8 @@ class ReachClasses {
   /// For reaches from the smallest to the largest, m, both >= 0.
   ReachClasses(double smallest, double largest);
   std::uint32_t class_count() const { return count_; }
+  /// The smallest reach of a class, m.
+  double lower_bound(std::uint32_t number) const;
   std::uint32_t class_of(double reach) const { return static_cast<std::uint32_t>((key(reach) - first_) >> shift_); }
 
  private:

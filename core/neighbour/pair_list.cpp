@@ -9,13 +9,13 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 
+}  // namespace
+
 /// Particles per chunk: many, so that little crosses; about 32 chunks, so that 8 threads share well.
 std::uint32_t chunk_length(std::size_t particle_count) {
   const std::size_t even = (particle_count + 31) / 32;
   return static_cast<std::uint32_t>(std::clamp<std::size_t>(even, 256, 4096));
 }
-
-}  // namespace
 
 void PairList::make_chunks(const Particles& p) {
   const auto n = static_cast<std::uint32_t>(p.count());

@@ -36,6 +36,9 @@ struct Chunk {
   std::vector<Incoming> incoming;  // in the order of the sending chunks
 };
 
+/// Particles of a chunk in a world of so many.
+std::uint32_t chunk_length(std::size_t particle_count);
+
 class PairList {
  public:
   std::vector<Chunk> chunks;
@@ -54,10 +57,11 @@ class PairList {
   /// the present history was written, or 0xFFFFFFFF for a new sphere; null keeps ranks. Threads: OpenMP.
   void build(const Particles& particles, const Wrap& wrap, const Column<double>& margin, const HistorySpec& spec,
              const std::uint32_t* old_rank);
+  /// Chunks alone, without entries. For lists that were built elsewhere.
+  void make_chunks(const Particles& particles);
   std::size_t memory_bytes() const;
 
  private:
-  void make_chunks(const Particles& particles);
   void link_chunks();
   void carry_history(const Particles& particles, const HistorySpec& spec, const std::uint32_t* old_rank,
                      const Column<std::size_t>& old_row, const Column<std::uint32_t>& old_j,

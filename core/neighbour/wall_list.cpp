@@ -150,7 +150,7 @@ void WallList::build(const Particles& p, const PairList& pairs, const std::vecto
   const std::size_t slots = rows * kWallContacts;
   touching.assign(slots, 0);
   normal.assign(slots, Vec3{});
-  stride = (slots + 7) / 8 * 8 + 8;
+  stride = stride_of(rows);
   history.resize(stride * spec.columns);
   if (old_row.empty()) return;
 #pragma omp parallel for schedule(static)

@@ -36,6 +36,7 @@ class WallList {
   Column<double> history;  // column k of slot c at history[k * stride + c]
   std::size_t stride = 0;
   std::size_t row_count() const { return sphere.size(); }
+  static std::size_t stride_of(std::size_t rows) { return (rows * kWallContacts + 7) / 8 * 8 + 8; }
 
   /// old_rank as in PairList::build. Rows follow the chunks of pairs. margin_factor: 1 right after the pair list was
   /// built; 2 when particles may already have used up their margin and may go back as far.

@@ -27,6 +27,9 @@ using Json = nlohmann::json;
 /// Wall time between two summaries of a running run, s.
 constexpr double kSummaryInterval = 5;
 
+/// Steps between two looks at the wall clock.
+constexpr std::uint64_t kWallClockSteps = 16;
+
 /// Things done at multiples of an interval of simulated time, in the step that ends nearest to each. What is due
 /// follows from the time alone, so that a resumed run does it in the same steps.
 struct Clock {
@@ -157,8 +160,8 @@ class Run {
     const double dt = sim_.time_step();
     const double end = o_.until >= 0 ? std::min(o_.until, sim_.settings().time.end) : sim_.settings().time.end;
     while (!sim_.finished() && sim_.time() < end - 0.5 * dt) {
-      sim_.step();
-      particle_steps_ += static_cast<double>(sim_.particle_count());
+      const std::uint64_t steps = sim_.step(steps_to_look(end));
+      particle_steps_ += static_cast<double>(steps * sim_.particle_count());
       const double t = sim_.time();
       for (auto& m : sim_.take_messages()) say(m);
       record(t, dt);
@@ -172,7 +175,7 @@ class Run {
       }
       if (o_.stop && o_.stop->load()) throw Error(Fault::interrupted, "interrupted at t = " + brief_quantity(t, "s"));
       // Reading the clock costs more than a small step.
-      if (sim_.step_count() % 16 != 0) continue;
+      if (sim_.step_count() % kWallClockSteps != 0) continue;
       const double now = seconds();
       if (o_.progress && now - last_progress_ > 0.2) {
         report_progress(now, end);
@@ -185,6 +188,21 @@ class Run {
         next_summary_ = seconds() + kSummaryInterval;
       }
     }
+  }
+
+  /// Steps until something is due after one, or until the wall clock is read again.
+  std::uint64_t steps_to_look(double end) const {
+    const double dt = sim_.time_step();
+    std::uint64_t steps = 1;
+    const auto due = [&](double t) {
+      const auto rings = [&](const Clock& c) { return c.due(t, dt); };
+      return t >= end - 0.5 * dt || std::any_of(sample_.begin(), sample_.end(), rings) ||
+             (frames_ && rings(frames_clock_)) || rings(checkpoint_clock_);
+    };
+    while ((sim_.step_count() + steps) % kWallClockSteps != 0 &&
+           !due(static_cast<double>(sim_.step_count() + steps) * dt))
+      ++steps;
+    return steps;
   }
 
   void record(double t, double dt) {

@@ -277,19 +277,29 @@ bool Simulation::finished() const {
   return w.ended || w.now >= w.c.time.end - 0.5 * w.dt;
 }
 
-void Simulation::step() {
+std::uint64_t Simulation::step(std::uint64_t most) {
   World& w = impl_->w;
   const double t = w.now;
   w.handle_events(t);
   w.insert_due(t);
   w.energy_removed += w.energy_leaving;
   w.energy_leaving = 0;
-  w.engine.begin(w.dt);
-  // verlet evaluates contacts at the end of the step, euler at its start.
-  const double at = w.engine.options.verlet ? static_cast<double>(w.steps + 1) * w.dt : t;
-  w.place_parts(at);
-  const GuardReport report = w.engine.finish(at, w.dt);
-  ++w.steps;
+  GuardReport report;
+  std::uint64_t done = 1;
+  if (w.engine.on_device()) {
+    // Poses before the step, which a rebuild at its start sees.
+    std::vector<Pose> before;
+    for (const EnginePart& part : w.engine.parts) before.push_back(part.pose);
+    const StepTable table = w.steps_alone(most);
+    for (std::size_t k = 0; k < before.size(); ++k) w.engine.parts[k].pose = before[k];
+    done = w.engine.run(table, w.dt, report);
+  } else {
+    w.engine.begin(w.dt);
+    const double at = w.contact_time(w.steps);
+    w.place_parts(at);
+    report = w.engine.finish(at, w.dt);
+  }
+  w.steps += done;
   w.now = static_cast<double>(w.steps) * w.dt;
   if (!report.message.empty())
     throw Error(Fault::numerics, "run stopped at t = " + six_digits(w.now) + " s: " + report.message);
@@ -306,15 +316,16 @@ void Simulation::step() {
   }
   for (auto& s : w.sensors)
     if (s->wants_every_step()) s->step(w);
+  return done;
 }
 
 Simulation::Counters Simulation::counters() const {
   const Engine& e = impl_->w.engine;
   Counters c;
   c.rebuilds = e.rebuilds();
-  c.pair_entries = e.pairs().entry_count();
+  c.pair_entries = e.pair_entry_count();
   c.touching = e.touching();
-  c.wall_entries = e.walls().row_count();
+  c.wall_entries = e.wall_row_count();
   c.seconds_neighbour = e.times().neighbour;
   c.seconds_contacts = e.times().contacts;
   c.seconds_integrate = e.times().integrate;

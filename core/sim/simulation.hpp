@@ -52,9 +52,10 @@ class Simulation {
   std::vector<std::string> scaled() const;
   bool finished() const;  // end time or end event reached
 
-  /// One time step. Throws Error(Fault::numerics) on a blow-up, a lost particle or a non-finite number, the world being
-  /// left as it was before the guard spoke.
-  void step();
+  /// One time step; on a device up to `most`, as many as nothing in the case has to look at the world between. Returns
+  /// how many. Throws Error(Fault::numerics) on a blow-up, a lost particle or a non-finite number, the world being left
+  /// as it was before the guard spoke.
+  std::uint64_t step(std::uint64_t most = 1);
 
   std::vector<std::unique_ptr<Sensor>>& sensors();
   /// Particles to be written from outside between steps (position, velocity, spin, turn; nothing may come or go).

@@ -141,11 +141,13 @@ bool World::settled_in(const std::string& name, double per_particle) const {
   return n > 0 && kinetic < allowed;
 }
 
-double World::cycles_of(const std::string& name) const {
+double World::cycles_at(const std::string& name, double t) const {
   const int m = motions.find(name);
   if (m < 0 || !motions.started(m)) return 0;
-  return motions.pose(m, now).cycle;
+  return motions.pose(m, t).cycle;
 }
+
+double World::cycles_of(const std::string& name) const { return cycles_at(name, now); }
 
 std::vector<ContactRow> World::contacts() const {
   std::vector<ContactRow> rows;
@@ -222,6 +224,26 @@ void World::place_parts(double t) {
     engine.parts[k].moves =
         motions.started(walls[k].motion) || c.motions[static_cast<std::size_t>(walls[k].motion)].carried_by != "";
   }
+}
+
+StepTable World::steps_alone(std::uint64_t most) {
+  for (const auto& s : sensors)
+    if (s->wants_every_step()) most = 1;
+  const auto cycles = [this](const std::string& motion, double t) { return cycles_at(motion, t); };
+  StepTable table;
+  const double last_step = c.time.end - 0.5 * dt;
+  for (std::uint64_t k = 0; k < most; ++k) {
+    const double t = static_cast<double>(steps + k) * dt;
+    if (k > 0) {
+      if (t >= last_step || !events.still(now, t, cycles)) break;
+      if (std::any_of(sources.begin(), sources.end(), [t](const Source& s) { return s.due(t); })) break;
+    }
+    const double at = contact_time(steps + k);
+    place_parts(at);
+    table.time.push_back(at);
+    for (const EnginePart& part : engine.parts) table.poses.push_back(part.pose);
+  }
+  return table;
 }
 
 void World::set_present(const std::string& part, bool present, double) {

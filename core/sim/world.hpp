@@ -58,6 +58,13 @@ struct World final : WorldView, EventView {
   void start_stage(std::size_t number, double t);
   void insert_due(double t);
   void leave(const std::vector<std::uint32_t>& ranks);
+  double cycles_at(const std::string& motion, double t) const;
+  /// Instant of the contacts of a step, s: verlet evaluates them at its end, euler at its start.
+  double contact_time(std::uint64_t step) const {
+    return static_cast<double>(engine.options.verlet ? step + 1 : step) * dt;
+  }
+  /// Steps from now on, at most `most`, between which nobody looks at the world: the first is always one of them.
+  StepTable steps_alone(std::uint64_t most);
   double potential(std::size_t p) const;
 
   // WorldView
@@ -74,7 +81,10 @@ struct World final : WorldView, EventView {
   bool part_present(std::size_t part) const override { return engine.parts[part].present; }
   const Surface& part_surface(std::size_t part) const override { return *walls[part].surface; }
   Pose part_pose(std::size_t part) const override { return engine.parts[part].pose; }
-  PartLoad part_load(std::size_t part) const override { return {engine.parts[part].force, engine.parts[part].torque}; }
+  PartLoad part_load(std::size_t part) const override {
+    engine.fetch_loads();
+    return {engine.parts[part].force, engine.parts[part].torque};
+  }
   std::vector<ContactRow> contacts() const override;
   std::vector<std::uint32_t> contact_counts() const override;
   EnergyLedger energy() const override;

@@ -27,6 +27,8 @@ std::string Engine::history_layout() const {
 
 void Engine::save(StateWriter& out) const {
   fetch();
+  fetch_loads();
+  pairs();  // brings both lists
   particles.save(out);
   out.put("lists/margin", margin_.data(), margin_.size(), "m");
   out.put("lists/reference", reinterpret_cast<const double*>(reference_.data()), reference_.size() * 3, "m");
@@ -89,7 +91,7 @@ void Engine::load(const StateReader& in) {
         Fault::files,
         "checkpoint: its contact history was written by other laws or in another precision; in the checkpoint:\n" +
             in.get_text("contacts/layout") + "in this case:\n" + history_layout());
-  if (device_) device_->host_changed();
+  if (device_) device_->all_changed();
   particles.load(in);
   const auto margins = in.get_doubles("lists/margin"), reference = in.get_doubles("lists/reference"),
              lengths = in.get_doubles("lists/lengths"), sums = in.get_doubles("energy/sums");

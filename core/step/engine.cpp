@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "compute/law_text.hpp"
 #include "step/on_device.hpp"
 #include "step/rest.hpp"
 
@@ -15,8 +14,6 @@ namespace calx {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-/// Steps a list is meant to last for particles that keep their speed; see PairList about margins.
-constexpr double kListSteps = 40;
 /// Rebuilds between two reorderings along the Morton curve.
 constexpr std::uint64_t kSortEvery = 10;
 
@@ -74,6 +71,7 @@ void Engine::inserted() {
   list_rank_.resize(particles.sphere_count(), kNone);
   reference_.resize(particles.sphere_count());
   if (rest_) rest_grow();
+  if (device_) device_->particles_changed();
   stale_ = count_changed_ = true;
 }
 
@@ -92,6 +90,7 @@ void Engine::remove(const std::vector<std::uint8_t>& mark, double dt) {
   list_rank_.swap(kept);
   particles.remove(mark);
   reference_.resize(particles.sphere_count());
+  if (device_) device_->particles_changed();
   count_changed_ = true;
   rebuild(dt, true);
 }
@@ -130,7 +129,11 @@ bool Engine::parts_left_margin() const {
 }
 
 void Engine::wrap_positions() {
-  for (auto& b : particles.body)
+  // By spans, as sums of a chunk are.
+  SpanSum<double> work;
+  work.total = energy_.wrapped;
+  for (std::size_t p = 0; p < particles.count(); ++p) {
+    Record& b = particles.body[p];
     for (int k = 0; k < 3; ++k) {
       if (!options.wrap.periodic[static_cast<std::size_t>(k)]) continue;
       const double length = options.wrap.length[k];
@@ -138,8 +141,10 @@ void Engine::wrap_positions() {
       const double shift = x < options.wrap.lo[k] ? length : x >= options.wrap.lo[k] + length ? -length : 0;
       if (shift == 0) continue;
       x += shift;
-      energy_.wrapped += b.m * options.gravity[k] * shift;
+      work.add(p / kSpan, b.m * options.gravity[k] * shift);
     }
+  }
+  energy_.wrapped = work.closed();
   if (particles.has_clumps) particles.refresh_members(0, particles.count());
 }
 
@@ -157,14 +162,12 @@ void Engine::check_periodic_lengths() const {
 }
 
 void Engine::rebuild(double dt, bool reorder) {
-  const std::size_t spheres = particles.sphere_count();
   if (rest_) rest_->listed = false;
-  if (options.wrap.any()) wrap_positions();
-
+  if (options.wrap.any() && !device_) wrap_positions();
   if (count_changed_) {
     double smallest = 1e300, largest = 0;
     const Record* s = particles.spheres();
-    for (std::size_t k = 0; k < spheres; ++k) {
+    for (std::size_t k = 0; k < particles.sphere_count(); ++k) {
       smallest = std::min(smallest, s[k].r);
       largest = std::max(largest, s[k].r);
     }
@@ -174,6 +177,19 @@ void Engine::rebuild(double dt, bool reorder) {
     check_periodic_lengths();
     uniform_ = one_material();
   }
+  if (reorder && particles.count() > 0) sorted_at_ = rebuilds_;
+  place_parts(dt, places_);
+  if (device_)
+    device_->build_lists(dt, reorder);
+  else
+    build_lists(dt, reorder);
+  ++rebuilds_;
+  stale_ = count_changed_ = false;
+  if (rest_) rest_relist(dt);
+}
+
+void Engine::build_lists(double dt, bool reorder) {
+  const std::size_t spheres = particles.sphere_count();
   if (reorder && particles.count() > 0) {
     const auto order = morton_order(particles, cell_);
     Column<std::uint32_t> ranks;
@@ -189,13 +205,11 @@ void Engine::rebuild(double dt, bool reorder) {
     list_rank_.swap(ranks);
     particles.permute(order);
     if (rest_) rest_permute(order);
-    sorted_at_ = rebuilds_;
   }
   margin_.resize(particles.count());
   for (std::size_t p = 0; p < particles.count(); ++p)
     margin_[p] = std::clamp(kListSteps * dt * norm(velocity(particles.body[p])), smallest_margin_, largest_margin_);
   pairs_.build(particles, options.wrap, margin_, history_, list_rank_.data());
-  place_parts(dt, places_);
   walls_.build(particles, pairs_, places_, margin_, 1, history_, list_rank_.data());
   const Record* s = particles.spheres();
   for (std::uint32_t k = 0; k < spheres; ++k) {
@@ -205,10 +219,6 @@ void Engine::rebuild(double dt, bool reorder) {
   size_sums();
   set_haste();
   used_.assign(pairs_.chunks.size(), 0);
-  ++rebuilds_;
-  stale_ = count_changed_ = false;
-  if (rest_) rest_relist(dt);
-  if (device_) device_->host_changed();
 }
 
 void Engine::size_sums() {
@@ -238,14 +248,15 @@ void Engine::set_haste() {
 
 void Engine::rebuild_if_stale(double dt) {
   const double start = now_seconds();
-  if (device_ && (stale_ || parts_left_margin())) fetch();
   if (stale_) {
     rebuild(dt, count_changed_ || rebuilds_ - sorted_at_ >= kSortEvery);
   } else if (parts_left_margin()) {
     place_parts(dt, places_);
-    walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
+    if (device_)
+      device_->build_walls(2);
+    else
+      walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
     if (rest_) rest_relist(dt);
-    if (device_) device_->host_changed();
   }
   times_.neighbour += now_seconds() - start;
 }
@@ -253,21 +264,14 @@ void Engine::rebuild_if_stale(double dt) {
 void Engine::begin(double dt) {
   if (rest_) rest_watch_parts(dt);
   if (!options.verlet) return;
-  if (stale_) {
-    fetch();
-    rebuild(dt, count_changed_);
-  }
+  if (stale_) rebuild(dt, count_changed_);
   const double start = now_seconds();
   for (auto& r : results_) r.gravity_work = {}, r.stale = false;
-  if (device_) {
-    device_->drift(dt);
-  } else {
 #pragma omp parallel for schedule(static) num_threads(team())
-    for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
-      drift_verlet(c, dt);
-      if (options.mixed) thin_pass(c);
-      guard_pass(c, dt);
-    }
+  for (std::size_t c = 0; c < pairs_.chunks.size(); ++c) {
+    drift_verlet(c, dt);
+    if (options.mixed) thin_pass(c);
+    guard_pass(c, dt);
   }
   for (auto& r : results_) {
     stale_ |= r.stale;
@@ -336,17 +340,12 @@ GuardReport Engine::finish(double t, double dt) {
     r.outside.clear();
   }
   double contacts_done = start;
-  if (device_)
-    device_->step(t, dt);
-  else
-    step_on_host(t, dt, contacts_done);
+  step_on_host(t, dt, contacts_done);
   times_.contacts += contacts_done - start;
 
-  GuardReport report;
   energy_.kinetic_translation = energy_.kinetic_rotation = energy_.gravity = energy_.elastic = 0;
   touching_ = 0;
-  double worst = 0;
-  const ChunkResult* worst_chunk = nullptr;
+  worst_ = {};
   std::vector<Wrench> load(parts.size());
   for (auto& r : results_) {
     energy_.kinetic_translation += r.kinetic_translation.closed();
@@ -361,19 +360,9 @@ GuardReport Engine::finish(double t, double dt) {
     energy_.gravity_work += r.gravity_work.closed();
     touching_ += r.touching;
     stale_ |= r.stale;
-    if (r.largest_overlap > worst) {
-      worst = r.largest_overlap;
-      worst_chunk = &r;
-    }
-    report.outside.insert(report.outside.end(), r.outside.begin(), r.outside.end());
+    if (r.largest_overlap > worst_.overlap) worst_ = {r.largest_overlap, r.overlap_i, r.overlap_j};
     for (std::size_t k = 0; k < load.size(); ++k) {
       load[k] += r.load[k];
-    }
-    if (r.bad && report.message.empty()) {
-      const std::uint32_t p = r.bad_particle, sphere = particles.has_clumps ? particles.first_sphere[p] : p;
-      report.message = "non-finite motion of particle " + std::to_string(particles.id[p]) + ": " +
-                       bad_motion(particles.body[p], reference_[sphere]) +
-                       "; the time step is too large or a law returned a non-finite force";
     }
   }
   energy_.gravity += energy_.wrapped;
@@ -382,45 +371,40 @@ GuardReport Engine::finish(double t, double dt) {
     parts[k].force = {load[k].fx, load[k].fy, load[k].fz};
     parts[k].torque = {load[k].tx, load[k].ty, load[k].tz};
   }
-  largest_overlap_ = std::max(largest_overlap_, worst);
-  if (report.message.empty() && worst > options.overlap_limit) {
-    const std::uint32_t i = worst_chunk->overlap_i, j = worst_chunk->overlap_j;
-    const Record& b = particles.spheres()[i];
-    const bool wall = ~j < parts.size() && j >= particles.sphere_count();
-    report.message = "overlap of " + format("%.3g of the radius at (%.4g, %.4g, ", worst, b.x, b.y) +
-                     format("%.4g) m", b.z, 0, 0) + ", particle " +
-                     std::to_string(particles.id[particles.owner_of(i)]) +
-                     (wall ? " with part \"" + parts[~j].name + "\""
-                           : " with particle " + std::to_string(particles.id[particles.owner_of(j)])) +
-                     format(
-                         "; the limit is %.3g (\"overlap_limit\"): a time step too large, too soft a material, or a "
-                         "particle squeezed between parts",
-                         options.overlap_limit, 0, 0);
-  }
+  largest_overlap_ = std::max(largest_overlap_, worst_.overlap);
   times_.integrate += now_seconds() - contacts_done;
+  return guard_report(worst_);
+}
+
+/// What the guards of all chunks have found, and the largest overlap where it is beyond the limit.
+GuardReport Engine::guard_report(const Worst& worst) const {
+  GuardReport report;
+  for (const auto& r : results_) {
+    report.outside.insert(report.outside.end(), r.outside.begin(), r.outside.end());
+    if (!r.bad || !report.message.empty()) continue;
+    const std::uint32_t p = r.bad_particle, sphere = particles.has_clumps ? particles.first_sphere[p] : p;
+    report.message = "non-finite motion of particle " + std::to_string(particles.id[p]) + ": " +
+                     bad_motion(particles.body[p], reference_[sphere]) +
+                     "; the time step is too large or a law returned a non-finite force";
+  }
+  if (!report.message.empty() || !(worst.overlap > options.overlap_limit)) return report;
+  const std::uint32_t i = worst.i, j = worst.j;
+  const Record& b = particles.spheres()[i];
+  const bool wall = ~j < parts.size() && j >= particles.sphere_count();
+  report.message = "overlap of " + format("%.3g of the radius at (%.4g, %.4g, ", worst.overlap, b.x, b.y) +
+                   format("%.4g) m", b.z, 0, 0) + ", particle " + std::to_string(particles.id[particles.owner_of(i)]) +
+                   (wall ? " with part \"" + parts[~j].name + "\""
+                         : " with particle " + std::to_string(particles.id[particles.owner_of(j)])) +
+                   format(
+                       "; the limit is %.3g (\"overlap_limit\"): a time step too large, too soft a material, or a "
+                       "particle squeezed between parts",
+                       options.overlap_limit, 0, 0);
   return report;
-}
-
-std::vector<std::string> Engine::device_obstacles() const {
-  std::vector<std::string> reasons;
-  for (const std::string& law : laws_without_text(laws))
-    reasons.push_back("law \"" + law + "\" has no law text, only native code");
-  for (const std::string& force : forces_without_text(forces))
-    reasons.push_back("force \"" + force + "\" has no text, only native code");
-  if (options.rest.on) reasons.push_back("particles at rest (/rest) are not there on devices");
-  return reasons;
-}
-
-void Engine::use_device(std::unique_ptr<Device> device, bool fast) {
-  device_ = std::make_unique<OnDevice>(std::move(device), *this, fast);
-}
-
-void Engine::fetch() const {
-  if (device_) device_->fetch();
 }
 
 std::vector<Engine::Touch> Engine::touches() const {
   fetch();
+  pairs();  // brings both lists
   std::vector<Touch> out;
   const Record* s = particles.spheres();
   for (std::size_t e = 0; e < pairs_.entry_count(); ++e) {

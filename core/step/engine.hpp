@@ -78,6 +78,12 @@ struct GuardReport {
   std::vector<std::uint32_t> outside;  // ranks of particles beyond the domain
 };
 
+/// Steps that follow each other without a look at the world in between.
+struct StepTable {
+  std::vector<double> time;  // s, of the contacts of each step
+  std::vector<Pose> poses;   // there: of part k at step j, poses[j * parts + k]
+};
+
 class Engine {
  public:
   Engine();
@@ -98,12 +104,18 @@ class Engine {
   /// Steps run on the device from now on, with the same bits unless fast. Call after prepare, without device_obstacles.
   /// Throws Error for a law text that the device's compiler refuses.
   void use_device(std::unique_ptr<Device> device, bool fast);
-  /// Brings particles and history from the device; call before looking at them. Nothing to do without one.
+  bool on_device() const { return device_ != nullptr; }
+  /// Bring from the device what is to be looked at: particles; loads on parts. Nothing to do without one. What
+  /// functions below return is brought by them.
   void fetch() const;
+  void fetch_loads() const;
   /// First half of a step: verlet moves particles to t + dt; euler does nothing.
   void begin(double dt);
   /// Second half: list check, contacts at time t (parts must hold their poses of t), sums, integration.
   GuardReport finish(double t, double dt);
+  /// On a device, instead of begin and finish: steps through the table until its end or until a guard speaks. Returns
+  /// how many were done; parts have the poses of the last.
+  std::size_t run(const StepTable& table, double dt, GuardReport& report);
 
   /// Tells the engine that particles were appended since the last step.
   void inserted();
@@ -112,14 +124,16 @@ class Engine {
   /// Removes the particles marked (rank order) and builds the lists anew.
   void remove(const std::vector<std::uint8_t>& mark, double dt);
 
-  const PairList& pairs() const { return pairs_; }
-  const WallList& walls() const { return walls_; }
-  const EngineEnergy& energy() const { return energy_; }
+  const PairList& pairs() const;
+  const WallList& walls() const;
+  std::size_t pair_entry_count() const;
+  std::size_t wall_row_count() const;
+  const EngineEnergy& energy() const;
   const EngineTimes& times() const { return times_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
-  std::uint64_t touching() const { return touching_; }
-  std::uint64_t asleep() const;                                // particles that rest
-  double largest_overlap() const { return largest_overlap_; }  // share of the radius, over the run
+  std::uint64_t touching() const;
+  std::uint64_t asleep() const;    // particles that rest
+  double largest_overlap() const;  // share of the radius, over the run
   std::size_t memory_bytes() const;
   std::uint32_t history_columns() const { return history_.columns; }
 
@@ -142,9 +156,18 @@ class Engine {
   struct Worker;
   struct ChunkResult;
   struct Rest;
+  /// The largest overlap of a step, share of the radius, and whose it is; j = ~part for a wall.
+  struct Worst {
+    double overlap = 0;
+    std::uint32_t i = 0, j = 0;
+  };
+  GuardReport guard_report(const Worst& worst) const;
+  void place(const StepTable& table, std::size_t step);
+  std::size_t steps_in_margin(const StepTable& table, std::size_t first);
   void rebuild_if_stale(double dt);
   void step_on_host(double t, double dt, double& contacts_done);
   void rebuild(double dt, bool reorder);
+  void build_lists(double dt, bool reorder);
   void wrap_positions();
   void check_periodic_lengths() const;
   void place_parts(double dt, std::vector<PartPlace>& places);
@@ -255,6 +278,7 @@ class Engine {
   std::uint64_t rebuilds_ = 0, sorted_at_ = 0, touching_ = 0;
   bool count_changed_ = true;
   double largest_overlap_ = 0;
+  Worst worst_;                       // of the last step
   std::unique_ptr<Rest> rest_;        // null: off
   std::unique_ptr<OnDevice> device_;  // null: this processor
   double time_ = 0;                   // s, of the last contacts

@@ -14,6 +14,9 @@ namespace calx {
 /// that a device of many small workers can follow; see kernels/fold.h.
 constexpr std::uint32_t kSpan = 64;
 
+/// Steps a list is meant to last for particles that keep their speed; see PairList about margins.
+constexpr double kListSteps = 40;
+
 /// What contacts store and lose, J.
 struct EnergySums {
   double elastic = 0, friction = 0, damping = 0, plastic = 0;

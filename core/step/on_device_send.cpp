@@ -5,7 +5,7 @@
 namespace calx {
 namespace {
 
-// Layouts of walls.h, surfaces.h and fold.h.
+// Layouts of walls.h, surfaces.h and rows.h.
 struct PartState {
   Quat turn;
   Vec3 shift, centre, velocity, spin;
@@ -15,11 +15,11 @@ struct ShapePlace {
   double size, tolerance;
   std::uint32_t triangles, triangle_count, edges, vertices, inwards, directions, axes, segments, points, alongs;
 };
-struct DeviceChunk {
-  std::uint32_t first_particle, last_particle, first_sphere, last_sphere, first_particle_span, first_sphere_span;
+struct TreePlace {
+  std::uint32_t first, last, elements, unused;
 };
 static_assert(sizeof(Record) == 96 && sizeof(Wrench) == 48 && sizeof(Quat) == 32 && sizeof(Vec3) == 24);
-static_assert(sizeof(PartState) == 136 && sizeof(ShapePlace) == 56 && sizeof(DeviceChunk) == 24);
+static_assert(sizeof(PartState) == 136 && sizeof(ShapePlace) == 56 && sizeof(geometry::FlatTree::Node) == 64);
 static_assert(sizeof(geometry::Triangle) == 192 && sizeof(geometry::Edge) == 88 && sizeof(geometry::Vertex) == 56);
 static_assert(sizeof(geometry::Axis) == 96 && sizeof(geometry::Segment) == 72 && sizeof(geometry::ProfilePoint) == 48 &&
               sizeof(geometry::Planar) == 16);
@@ -31,6 +31,8 @@ void Engine::OnDevice::send_shapes() {
   Memory& m = *memory_;
   Elements all;
   std::vector<ShapePlace> places;
+  std::vector<TreePlace> trees;
+  FlatTree forest;
   const auto append = [](auto& to, const auto& from) {
     const auto first = static_cast<std::uint32_t>(to.size());
     to.insert(to.end(), from.begin(), from.end());
@@ -52,7 +54,18 @@ void Engine::OnDevice::send_shapes() {
     place.points = append(all.points, e.points);
     place.alongs = append(all.point_direction, e.point_direction);
     places.push_back(place);
+    const FlatTree tree = part.surface->flat_tree();
+    const auto first = static_cast<std::uint32_t>(forest.nodes.size());
+    trees.push_back(
+        {first, first + static_cast<std::uint32_t>(tree.nodes.size()), append(forest.order, tree.order), 0});
+    for (FlatTree::Node node : tree.nodes) {
+      node.skip += first;
+      forest.nodes.push_back(node);
+    }
   }
+  m.put(m.trees, trees);
+  m.put(m.nodes, forest.nodes);
+  m.put(m.tree_elements, forest.order);
   m.put(m.shapes, places);
   m.put(m.triangles, all.triangles);
   m.put(m.edges, all.edges);
@@ -63,36 +76,42 @@ void Engine::OnDevice::send_shapes() {
   m.put(m.segments, all.segments);
   m.put(m.points, all.points);
   m.put(m.alongs, all.point_direction);
+  m.reserve(m.parts, kBatch * engine_.parts.size() * sizeof(PartState));
+  m.reserve(m.times, kBatch * sizeof(double));
 }
 
-void Engine::OnDevice::send_parts() {
+void Engine::OnDevice::send_table(const StepTable& table, std::size_t first, std::size_t count) {
+  Memory& m = *memory_;
+  const std::size_t parts = engine_.parts.size();
   std::vector<PartState> states;
-  for (const EnginePart& part : engine_.parts)
-    states.push_back({part.pose.turn, part.pose.shift, part.pose.centre, part.pose.velocity, part.pose.spin,
-                      static_cast<std::uint32_t>(states.size()), part.material});
-  memory_->put(memory_->parts, states);
+  for (std::size_t step = first; step < first + (moving_ ? count : 1); ++step)
+    for (std::size_t k = 0; k < parts; ++k) {
+      const Pose& pose = table.poses[step * parts + k];
+      states.push_back({pose.turn, pose.shift, pose.centre, pose.velocity, pose.spin, static_cast<std::uint32_t>(k),
+                        engine_.parts[k].material});
+    }
+  device_->write(m.parts, states.data(), states.size() * sizeof(PartState));
+  if (!engine_.forces.empty()) device_->write(m.times, &table.time[first], count * sizeof(double));
 }
 
 void Engine::OnDevice::send_particles() {
   Memory& m = *memory_;
   const Particles& p = engine_.particles;
   m.put(m.body, p.body);
-  std::vector<std::uint32_t> material;
+  std::vector<std::uint32_t> material, ranks(p.count());
   for (std::size_t s = 0; s < p.sphere_count(); ++s) material.push_back(p.material[p.owner_of(s)]);
   m.put(m.sphere_material, material);
+  for (std::uint32_t k = 0; k < ranks.size(); ++k) ranks[k] = k;
+  m.put(m.host_rank, ranks);
   m.put(m.margin, engine_.margin_);
   m.put(m.listed, engine_.reference_);
-  m.reserve(m.sums, p.sphere_count() * sizeof(Wrench));
+  m.put(m.list_rank, engine_.list_rank_);
   const bool verlet = engine_.options.verlet;
-  const bool pulled = !engine_.forces.empty();
-  if (pulled) {
+  if (!engine_.forces.empty()) {
     std::vector<double> radius;
     for (std::size_t k = 0; k < p.count(); ++k) radius.push_back(p.equal_radius(k));
     m.put(m.equal_radius, radius);
-    m.reserve(m.added, p.count() * sizeof(Wrench));
   }
-  if (engine_.options.ledger || verlet || pulled)
-    m.reserve(m.particle_energy, kParticleEnergies * p.count() * sizeof(double));
   if (verlet) m.put(m.wrench, p.wrench);
   if (!p.has_clumps && !verlet) return;
   m.put(m.turn, p.turn);
@@ -101,95 +120,55 @@ void Engine::OnDevice::send_particles() {
     inertia.push_back(p.inertia(k));
     for (const auto& member : p.shapes[p.shape[k]].members) arms.push_back(p.scale[k] * member.at);
   }
-  if (p.has_clumps) {
-    m.put(m.member, p.member);
-    m.put(m.first_sphere, p.first_sphere);
-  }
   m.put(m.inertia, inertia);
   m.put(m.arms, arms);
+  if (!p.has_clumps) return;
+  m.put(m.member, p.member);
+  m.put(m.first_sphere, p.first_sphere);
+  m.put(m.owner, p.owner);
 }
 
-void Engine::OnDevice::send_pairs() {
+// Lists that the host has built, of a checkpoint.
+void Engine::OnDevice::send_lists() {
   Memory& m = *memory_;
-  const PairList& list = engine_.pairs_;
-  const std::size_t n = engine_.particles.sphere_count(), entries = list.entry_count();
-  m.put(m.pair_i, list.i);
-  m.put(m.pair_j, list.j);
-  m.put(m.pair_touching, list.touching);
-  m.put(m.pair_history, list.history);
-  m.reserve(m.pair_out, kPairValues * entries * (engine_.options.mixed ? sizeof(float) : sizeof(double)));
-  m.reserve(m.pair_share, entries * sizeof(double));
-  if (engine_.options.ledger) m.reserve(m.pair_energy, kEnergies * entries * sizeof(double));
-
-  std::vector<std::uint32_t> row_first(n + 1, 0), in_first(n + 1, 0), in_middle(n, 0), in_entry(entries);
-  for (std::size_t e = 0; e < entries; ++e) {
-    ++row_first[list.i[e] + 1];
-    ++in_first[list.j[e] + 1];
-  }
-  for (std::size_t s = 0; s < n; ++s) {
-    row_first[s + 1] += row_first[s];
-    in_first[s + 1] += in_first[s];
-  }
-  // First those of the sphere's own chunk, then those of chunks before it; entries rise in both.
-  std::vector<std::uint32_t> next(in_first.begin(), in_first.end() - 1);
-  for (const bool own : {true, false}) {
-    for (const Chunk& c : list.chunks)
-      for (std::size_t e = c.first_entry; e < c.last_entry; ++e)
-        if ((list.j[e] < c.last_sphere) == own) in_entry[next[list.j[e]]++] = static_cast<std::uint32_t>(e);
-    if (own) in_middle = next;
-  }
-  m.put(m.row_first, row_first);
-  m.put(m.in_first, in_first);
-  m.put(m.in_middle, in_middle);
-  m.put(m.in_entry, in_entry);
-}
-
-void Engine::OnDevice::send_walls() {
-  Memory& m = *memory_;
-  const WallList& list = engine_.walls_;
-  const std::size_t n = engine_.particles.sphere_count(), rows = list.row_count(), slots = rows * kWallContacts;
-  m.put(m.row_sphere, list.sphere);
-  m.put(m.row_part, list.part);
-  m.put(m.first_element, list.first_element);
-  m.put(m.elements, list.elements);
-  m.put(m.wall_touching, list.touching);
-  m.put(m.wall_normals, list.normal);
-  m.put(m.wall_history, list.history);
-  m.reserve(m.wall_counts, rows * sizeof(std::uint32_t));
-  m.reserve(m.wall_out, kWallValues * slots * sizeof(double));
-  m.reserve(m.wall_share, slots * sizeof(double));
-  if (engine_.options.ledger) m.reserve(m.wall_energy, kEnergies * slots * sizeof(double));
+  const PairList& pairs = engine_.pairs_;
+  const std::size_t n = engine_.particles.sphere_count();
+  listed_spheres_ = static_cast<std::uint32_t>(n);
+  entries_ = pairs.entry_count();
   std::vector<std::uint32_t> first(n + 1, 0);
-  for (const std::uint32_t s : list.sphere) ++first[s + 1];
+  for (const std::uint32_t i : pairs.i) ++first[i + 1];
+  for (std::size_t s = 0; s < n; ++s) first[s + 1] += first[s];
+  m.put(m.row_first, first);
+  m.put(m.pair_j, pairs.j);
+  m.put(m.pair_touching, pairs.touching);
+  m.put(m.pair_history, pairs.history);
+  const WallList& walls = engine_.walls_;
+  rows_ = walls.row_count();
+  elements_ = walls.elements.size();
+  wall_stride_ = walls.stride;
+  m.put(m.row_sphere, walls.sphere);
+  m.put(m.row_part, walls.part);
+  m.put(m.first_element, walls.first_element);
+  m.put(m.elements, walls.elements);
+  m.put(m.wall_touching, walls.touching);
+  m.put(m.wall_normals, walls.normal);
+  m.put(m.wall_history, walls.history);
+  first.assign(n + 1, 0);
+  for (const std::uint32_t s : walls.sphere) ++first[s + 1];
   for (std::size_t s = 0; s < n; ++s) first[s + 1] += first[s];
   m.put(m.wall_first, first);
+  const Numbers now = numbers(0);
+  link_entries(now);
+  make_chunks(now);
+  size_step();
 }
 
-void Engine::OnDevice::send_chunks() {
-  Memory& m = *memory_;
-  std::vector<DeviceChunk> chunks;
-  m.sphere_spans = m.particle_spans = 0;
-  for (const Chunk& c : engine_.pairs_.chunks) {
-    chunks.push_back(
-        {c.first_particle, c.last_particle, c.first_sphere, c.last_sphere, m.particle_spans, m.sphere_spans});
-    m.particle_spans += span_count(c.last_particle - c.first_particle);
-    m.sphere_spans += span_count(c.last_sphere - c.first_sphere);
-  }
-  const std::size_t width = result_width();
-  m.put(m.chunks, chunks);
-  m.reserve(m.pair_sums, m.sphere_spans * kSums * sizeof(double));
-  m.reserve(m.wall_sums, m.sphere_spans * width * sizeof(double));
-  m.reserve(m.particle_sums, m.particle_spans * kParticleEnergies * sizeof(double));
-  m.reserve(m.chunk_sums, chunks.size() * width * sizeof(double));
-}
-
-void Engine::OnDevice::send_lists() {
-  if (current_) return;
-  send_particles();
-  send_pairs();
-  send_walls();
-  send_chunks();
-  current_ = true;
+void Engine::OnDevice::send() {
+  if (!particles_sent_) send_particles();
+  particles_sent_ = true;
+  if (!lists_sent_) send_lists();
+  lists_sent_ = true;
+  send_sums();
 }
 
 }  // namespace calx

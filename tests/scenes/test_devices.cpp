@@ -1,39 +1,16 @@
 // The same bits on every device as on the processor: motion, history, energies, loads.
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 
-#include "base/error.hpp"
-#include "compute/device.hpp"
+#include "scenes/device_kinds.hpp"
 #include "scenes/scenes.hpp"
 #include "support/memory_state.hpp"
 
 using namespace calx;
 
 namespace {
-
-/// Devices of this machine; CUDA is a stand-in driver unless CALX_TEST_CUDA is "real".
-std::vector<std::string> devices() {
-  setenv("CALX_CACHE", CALX_TEST_CACHE, 0);
-  std::filesystem::create_directories(CALX_TEST_CACHE "/pocl");
-  setenv("POCL_CACHE_DIR", CALX_TEST_CACHE "/pocl", 0);
-  const char* asked = std::getenv("CALX_TEST_CUDA");
-  if (!asked || std::string(asked) != "real") {
-    setenv("CALX_LIBCUDA", CALX_STAND_IN_CUDA, 1);
-    setenv("CALX_LIBNVRTC", CALX_STAND_IN_NVRTC, 1);
-  }
-  std::vector<std::string> kinds{"host", "cuda"};
-  try {
-    open_device("opencl");
-    kinds.push_back("opencl");
-  } catch (const Error& e) {
-    MESSAGE("skipped: " << e.what());
-  }
-  return kinds;
-}
 
 SimulationOptions on(const std::string& device) {
   SimulationOptions o = test_options(2);
@@ -61,6 +38,8 @@ void check_same(const Outcome& a, const Outcome& b) {
   CHECK(a.digest == b.digest);
   CHECK(a.counters.touching == b.counters.touching);
   CHECK(a.counters.rebuilds == b.counters.rebuilds);
+  CHECK(a.counters.pair_entries == b.counters.pair_entries);
+  CHECK(a.counters.wall_entries == b.counters.wall_entries);
   CHECK(a.counters.largest_overlap == b.counters.largest_overlap);
   CHECK(a.energy.kinetic_translation == b.energy.kinetic_translation);
   CHECK(a.energy.kinetic_rotation == b.energy.kinetic_rotation);
@@ -86,7 +65,7 @@ void check_scene(const CaseFile& file, int steps, std::uint64_t least = 400, boo
   const Outcome expected = outcome(reference);
   CHECK(expected.counters.touching > least);
   CHECK(expected.counters.rebuilds >= 4);
-  for (const std::string& device : devices()) {
+  for (const std::string& device : test_devices()) {
     CAPTURE(device);
     Simulation sim(file, on(device));
     CHECK(sim.device().find(device) == 0);
@@ -155,7 +134,7 @@ TEST_CASE("mixed precision: the bits of the processor on every device") {
 TEST_CASE("fast arithmetic: other last digits, the same motion") {
   SimulationOptions fast = on("opencl"), exact = on("cpu");
   fast.fast = true;
-  if (devices().size() < 3) return;
+  if (test_devices().size() < 3) return;
   Simulation a(sphere_bed("euler"), exact), b(sphere_bed("euler"), fast);
   CHECK(b.fast());
   CHECK(!a.fast());
@@ -178,7 +157,7 @@ TEST_CASE("a checkpoint goes on with on another device, to the same bits") {
   const Outcome expected = outcome(reference);
   auto sim = std::make_unique<Simulation>(file, on("cpu"));
   advance(*sim, 400);
-  std::vector<std::string> order = devices();
+  std::vector<std::string> order = test_devices();
   order.push_back("cpu");
   for (const std::string& device : order) {
     MemoryState state;

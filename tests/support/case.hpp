@@ -71,7 +71,7 @@ inline SimulationOptions test_options(int threads = 1) {
 }
 
 inline void advance(Simulation& sim, int steps) {
-  for (int k = 0; k < steps; ++k) sim.step();
+  for (int k = 0; k < steps;) k += static_cast<int>(sim.step(static_cast<std::uint64_t>(steps - k)));
 }
 
 /// count particles on a cubic lattice of nx x ny columns from the corner given, moved about by up to jitter, m, with
