@@ -30,13 +30,13 @@ struct StudyParameter {
 
 /// What was measured, in the unit of the observable. Scalars have one value and no x.
 struct MeasuredData {
-  std::vector<double> x;     // in the unit of the column it is measured against
-  std::vector<double> y;     // mean over repeats
-  std::vector<double> sd;    // of one repeat
-  std::size_t repeats = 1;   // values averaged in y
-  double correlation = 0;    // of neighbouring points of one repeat (autocorrelation)
+  std::vector<double> x;      // in the unit of the column it is measured against
+  std::vector<double> y;      // mean over repeats
+  std::vector<double> sd;     // of one repeat
+  std::size_t repeats = 1;    // values averaged in y
+  double correlation = 0;     // of neighbouring points of one repeat (autocorrelation)
   bool sd_estimated = false;  // sd comes from the repeats themselves
-  std::string source;        // file, for reports; empty: stands in the study
+  std::string source;         // file, for reports; empty: stands in the study
 };
 
 struct StudyObservable {
@@ -67,7 +67,8 @@ struct Study {
 /// Reads and checks a study, its cases (read, not run: every sensor and column must exist) and its measured data.
 /// Throws Error(Fault::settings): "study.json /observables/0/kind: ...", for data files "discharge.csv line 7: ..." or
 /// the pointer that names them; Error(Fault::files) when the study itself cannot be read.
-Study read_study(const std::string& path);
+/// plugin_path: folders searched first for plugins.
+Study read_study(const std::string& path, const std::vector<std::string>& plugin_path = {});
 
 /// Every kind of observable that a study may name, with what it is.
 const std::vector<std::pair<std::string, std::string>>& observable_kinds();
