@@ -1,0 +1,180 @@
+#include "infer/causes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace calx::infer {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr int grid = 241, directions = 12;
+constexpr std::array<double, 4> prior_scales = {0.25, 0.5, 1, 2};
+
+double log_prior(double amplitude, double scale, bool one_sided) {
+  double sum = 0;
+  for (double m : prior_scales) {
+    const double z = amplitude / (m * scale);
+    sum += std::exp(-0.5 * z * z) / (m * scale);
+  }
+  return std::log(std::max(sum, 1e-300) / prior_scales.size() / std::sqrt(2 * pi) * (one_sided ? 2 : 1));
+}
+
+SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_sided, const Vector& r) {
+  SingleFit fit;
+  fit.amplitude = Vector::Zero(1);
+  const double power = g.squaredNorm();
+  if (power * scale * scale < 1e-6) return fit;
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(shape.transpose() * shape);
+  const Vector lambda = solver.eigenvalues().cwiseMax(0);
+  const Vector a = solver.eigenvectors().transpose() * (shape.transpose() * r),
+               b = solver.eigenvectors().transpose() * (shape.transpose() * g);
+  const double along = r.dot(g), mean = along / power, v = 1 / std::sqrt(power);
+  const bool tolerant = shape.cols() > 0;
+  double low = mean - (tolerant ? 16 : 8) * v - (tolerant ? 0.4 * std::abs(mean) : 0),
+         high = mean + (tolerant ? 16 : 8) * v + (tolerant ? 0.8 * std::abs(mean) : 0);
+  if (one_sided) low = std::max(low, 0.0), high = std::max(high, 3 * v);
+  const double step = (high - low) / (grid - 1);
+  std::array<double, grid> log_posterior;
+  double largest = -1e300;
+  for (int k = 0; k < grid; ++k) {
+    const double x = low + k * step;
+    double l = x * along - 0.5 * x * x * power + log_prior(x, scale, one_sided);
+    for (int q = 0; q < lambda.size(); ++q) {
+      const double p = x * x * lambda[q], c = a[q] - x * b[q];
+      l += 0.5 * x * x * c * c / (1 + p) - 0.5 * std::log1p(p);
+    }
+    log_posterior[static_cast<std::size_t>(k)] = l;
+    largest = std::max(largest, l);
+  }
+  double sum = 0, first = 0, second = 0;
+  for (int k = 0; k < grid; ++k) {
+    const double x = low + k * step, w = std::exp(log_posterior[static_cast<std::size_t>(k)] - largest);
+    sum += w, first += w * x, second += w * x * x;
+  }
+  fit.odds = largest + std::log(sum * step);
+  fit.amplitude[0] = first / sum;
+  fit.sd = std::sqrt(std::max(0.0, second / sum - fit.amplitude[0] * fit.amplitude[0]));
+  double below = 0;
+  fit.low = low, fit.high = high;
+  for (int k = 0; k < grid; ++k) {
+    const double x = low + k * step, w = std::exp(log_posterior[static_cast<std::size_t>(k)] - largest) / sum;
+    if (below < 0.05 && below + w >= 0.05) fit.low = x + step * ((0.05 - below) / w - 0.5);
+    if (below < 0.95 && below + w >= 0.95) fit.high = x + step * ((0.95 - below) / w - 0.5);
+    below += w;
+  }
+  return fit;
+}
+
+Matrix shape_at(const Signature& s, const Vector& amplitude) {
+  Matrix b = amplitude[0] * s.shape[0];
+  if (amplitude.size() == 1) return b;
+  Matrix all(b.rows(), b.cols() + s.shape[1].cols());
+  all << b, amplitude[1] * s.shape[1];
+  return all;
+}
+
+/// ln of the standard normal distribution function.
+double log_normal_cdf(double x) { return std::log(std::max(0.5 * std::erfc(-x / std::sqrt(2.0)), 1e-300)); }
+
+}  // namespace
+
+Matrix shape_columns(const Observables& observables, const Vector& signature, double scale, const Options& options) {
+  Matrix all = Matrix::Zero(signature.size(), 0);
+  if (options.shape <= 0) return all;
+  for (std::size_t b = 0; b < observables.blocks.size(); ++b) {
+    const int first = observables.first(b), n = observables.size(b);
+    const Vector g = signature.segment(first, n);
+    // Where four typical amplitudes stay far below the noise, no tolerance is needed.
+    if (options.shape * 4 * scale * g.cwiseQuotient(observables.blocks[b].sd).norm() < 0.1) continue;
+    Matrix kernel = Matrix::Ones(1, 1);
+    if (n > 1)
+      kernel =
+          low_rank(0.5 * Matrix::Ones(n, n) + 0.5 * smooth_kernel(observables.blocks[b], options.shape_length), 2e-3);
+    all.conservativeResize(Eigen::NoChange, all.cols() + kernel.cols());
+    all.rightCols(kernel.cols()).setZero();
+    all.block(first, all.cols() - kernel.cols(), n, kernel.cols()) = options.shape * g.asDiagonal() * kernel;
+  }
+  return all;
+}
+
+Signature whiten_signature(const LinearModel& model, std::size_t effect, const Metric& metric, const Options& options) {
+  const Effect& e = model.effects[effect];
+  Signature s;
+  s.scale = e.scale, s.one_sided = e.one_sided;
+  s.columns = metric.whiten(model.signatures[effect]);
+  for (int c = 0; c < e.components; ++c)
+    s.shape.push_back(
+        metric.whiten(shape_columns(model.observables, model.signatures[effect].col(c), e.scale, options)));
+  return s;
+}
+
+SingleFit fit_single(const Signature& s, const Metric& metric) {
+  const Vector& r = metric.residual();
+  if (s.columns.cols() == 1) return fit_line(s.columns.col(0), s.shape[0], s.scale, s.one_sided, r);
+  std::vector<double> odds;
+  SingleFit best;
+  for (int k = 0; k < directions; ++k) {
+    const Vector direction =
+        (Vector(2) << std::cos(2 * pi * k / directions), std::sin(2 * pi * k / directions)).finished();
+    SingleFit fit = fit_line(s.columns * direction, shape_at(s, direction), s.scale, true, r);
+    odds.push_back(fit.odds - std::log(directions));
+    if (k == 0 || fit.odds > best.odds) {
+      best = fit;
+      best.amplitude = fit.amplitude[0] * direction;
+    }
+  }
+  best.odds = log_sum(odds);
+  return best;
+}
+
+PairFit fit_pair(const Signature& a, const Signature& b, const Vector& start_a, const Vector& start_b,
+                 const Metric& metric) {
+  const int na = static_cast<int>(a.columns.cols()), nb = static_cast<int>(b.columns.cols()), n = na + nb;
+  Matrix x(metric.residual().size(), n);
+  x << a.columns, b.columns;
+  Vector mean(n), scale(n);
+  mean << start_a, start_b;
+  scale << Vector::Constant(na, a.scale), Vector::Constant(nb, b.scale);
+  PairFit fit;
+  Matrix information(n, n);
+  Vector pull(n);
+  double base = 0;
+  for (int pass = 0; pass < 3; ++pass) {
+    const Matrix shape_a = shape_at(a, mean.head(na)), shape_b = shape_at(b, mean.tail(nb));
+    Matrix c(x.rows(), shape_a.cols() + shape_b.cols());
+    c << shape_a, shape_b;
+    const Eigen::LLT<Matrix> factor(Matrix::Identity(c.cols(), c.cols()) + c.transpose() * c);
+    const Vector cr = factor.matrixL().solve(c.transpose() * metric.residual());
+    const Matrix cx = factor.matrixL().solve(c.transpose() * x);
+    information = x.transpose() * x - cx.transpose() * cx;
+    pull = x.transpose() * metric.residual() - cx.transpose() * cr;
+    base = 0.5 * cr.squaredNorm() - Matrix(factor.matrixL()).diagonal().array().log().sum();
+    Matrix precision = information;
+    precision.diagonal().array() += (2 * scale).array().pow(-2);
+    mean = precision.ldlt().solve(pull);
+    if (a.one_sided) mean[0] = std::max(mean[0], 0.0);
+    if (b.one_sided) mean[na] = std::max(mean[na], 0.0);
+  }
+  std::vector<double> odds;
+  for (double ma : prior_scales)
+    for (double mb : prior_scales) {
+      Vector s(n);
+      s << Vector::Constant(na, ma * a.scale), Vector::Constant(nb, mb * b.scale);
+      Matrix precision = information;
+      precision.diagonal().array() += s.array().pow(-2);
+      const Matrix v = precision.inverse();
+      const Vector m = v * pull;
+      double l = base + 0.5 * m.dot(pull) + 0.5 * std::log(v.determinant()) - s.array().log().sum();
+      // Half-normal priors: twice the probability that the amplitude is positive.
+      if (a.one_sided) l += std::log(2.0) + log_normal_cdf(m[0] / std::sqrt(v(0, 0)));
+      if (b.one_sided) l += std::log(2.0) + log_normal_cdf(m[na] / std::sqrt(v(na, na)));
+      odds.push_back(l - std::log(16.0));
+    }
+  fit.odds = log_sum(odds);
+  fit.first = mean.head(na), fit.second = mean.tail(nb);
+  return fit;
+}
+
+}  // namespace calx::infer

@@ -1,0 +1,33 @@
+// denoise.hpp: responses of a simulator, freed from the scatter of the few runs behind them.
+#pragma once
+#include "infer/observables.hpp"
+#include "infer/seed_scatter.hpp"
+
+namespace calx::infer {
+
+/// Posterior mean of a response given its noise, block by block, under a mixture of priors: exactly zero, constant,
+/// smooth, rough or white Gaussian processes of several strengths (empirical Bayes; Johnstone and Silverman 2005). A
+/// clean but wrong signature beats a right but noisy one, so this decides whether causes are found.
+class Denoiser {
+ public:
+  Denoiser(const Observables& observables, const SeedScatter& scatter);
+  /// response: difference of runs; its noise covariance is variance times that of one run. Returns the cleaned
+  /// response; log_evidence, where not null, gets the log density of the response under the mixture added.
+  Vector operator()(const Vector& response, double variance, double* log_evidence = nullptr) const;
+
+ private:
+  struct Kernel {
+    Matrix modes;   // of the whitened block, orthonormal columns
+    Vector powers;  // variance of each mode at strength one, whitened
+  };
+  struct Part {
+    int first, size;
+    Vector sd;
+    double white, alpha;  // whitening: (z - alpha mean(z)) / white
+    std::vector<Kernel> kernels;
+    double mean_power, other_power;  // of the white prior: along the constant mode, along the others
+  };
+  std::vector<Part> parts_;
+};
+
+}  // namespace calx::infer

@@ -1,0 +1,34 @@
+// diagnosis.hpp: from a linear model and measurements to a verdict with its reasons.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "infer/checks.hpp"
+#include "infer/gain.hpp"
+#include "infer/posterior.hpp"
+#include "infer/screen.hpp"
+
+namespace calx::infer {
+
+enum class Verdict { none, named, ambiguous, unknown };
+const char* name(Verdict verdict);
+
+struct Diagnosis {
+  Verdict verdict = Verdict::ambiguous;
+  std::string reason;
+  std::vector<std::size_t> named;   // effects
+  std::vector<double> probability;  // of each effect, after the calibration map of the options
+  Posterior posterior;              // of the campaigns together, or of the fitted one without stacking
+  Posterior fitted;                 // of the fitted campaign alone
+  FitCheck before, after;           // of the recalibrated model, and with the named effects
+  Gain gain;                        // of the named effects, or of the unknown term
+  double mixture_score = 0;  // held-out log score of all explanations of the fitted campaign that hold a named one
+  std::vector<Event> events;
+  std::vector<std::size_t> set;  // credible set of 95 %, see credible_set
+};
+
+/// Deterministic from the seed of the options. A cause is named only if its probability is above options.name_above,
+/// the fit test does not refuse it, and it predicts the held-out campaign better than the recalibrated old model.
+Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& options);
+
+}  // namespace calx::infer

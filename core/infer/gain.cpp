@@ -1,0 +1,81 @@
+#include "infer/gain.hpp"
+
+#include <cmath>
+
+#include "infer/causes.hpp"
+
+namespace calx::infer {
+
+namespace {
+
+struct Prediction {
+  Vector mean;
+  Matrix covariance;
+};
+
+/// Of held-out residuals: parameters a ~ N(0, I) act through `columns`; `own` is redrawn for each campaign.
+Prediction predict(const LinearModel& model, const Budget& budget, const Matrix& columns, const Matrix& own) {
+  const Vector r = budget.fit.y - model.base + model.sensitivities * model.u;
+  const Eigen::LLT<Matrix> factor(budget.systematic + own + budget.fit.noise);
+  const Matrix weighted = factor.solve(columns);
+  const Matrix v = (columns.transpose() * weighted + Matrix::Identity(columns.cols(), columns.cols())).inverse();
+  Prediction p;
+  p.mean = columns * (v * (weighted.transpose() * r));
+  p.covariance = columns * v * columns.transpose() + budget.systematic + own + budget.hold.noise;
+  return p;
+}
+
+Gain compare(const LinearModel& model, const Budget& budget, const Matrix& columns, const Matrix& own) {
+  const Prediction before = predict(model, budget, model.sensitivities, Matrix::Zero(own.rows(), own.cols()));
+  Matrix all(columns.rows(), columns.cols() + model.sensitivities.cols());
+  all << model.sensitivities, columns;
+  const Prediction after = predict(model, budget, all, own);
+  const Vector r = budget.hold.y - model.base + model.sensitivities * model.u;
+  const Metric old_metric(before.covariance, r - before.mean), new_metric(after.covariance, r - after.mean);
+  Gain gain;
+  gain.log_score = new_metric.log_density() - old_metric.log_density();
+  // With r ~ N(m1, V1): ln ratio = (z0^2 - |e|^2) / 2 + constant, e standard normal, z0 = L0^-1 (L1 e + m1 - m0).
+  const Eigen::LLT<Matrix> root(after.covariance);
+  const Matrix a = old_metric.whiten(Matrix(root.matrixL()));
+  const Vector c = old_metric.whiten(after.mean - before.mean);
+  const Matrix q = a.transpose() * a - Matrix::Identity(a.rows(), a.cols());
+  gain.sd = std::sqrt(0.5 * q.squaredNorm() + (a.transpose() * c).squaredNorm());
+  const Vector sd = model.observables.sd();
+  double count = 0;
+  for (int k = 0; k < r.size(); ++k) {
+    if (budget.hold.noise(k, k) > 400 * sd[k] * sd[k]) continue;  // absent or screened
+    gain.error_before += std::pow((r[k] - before.mean[k]) / sd[k], 2);
+    gain.error_after += std::pow((r[k] - after.mean[k]) / sd[k], 2);
+    count += 1;
+  }
+  if (count > 0)
+    gain.error_before = std::sqrt(gain.error_before / count), gain.error_after = std::sqrt(gain.error_after / count);
+  return gain;
+}
+
+}  // namespace
+
+Gain held_out_gain(const LinearModel& model, const Budget& budget, const std::vector<std::size_t>& effects,
+                   const std::vector<Vector>& amplitudes, const Options& options) {
+  const auto rows = model.base.size();
+  Matrix columns(rows, 0), own = Matrix::Zero(rows, rows);
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const std::size_t e = effects[k];
+    const Matrix& g = model.signatures[e];
+    const double scale = std::max(2 * model.effects[e].scale, amplitudes[k].norm());
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + g.cols());
+    columns.rightCols(g.cols()) = scale * g;
+    const Matrix b = shape_columns(model.observables, g * amplitudes[k], 1, options);
+    own += b * b.transpose();
+  }
+  return compare(model, budget, columns, own);
+}
+
+Gain held_out_gain(const LinearModel& model, const Budget& budget, const Term& term, double strength, const Options&) {
+  const auto rows = model.base.size();
+  Matrix columns = Matrix::Zero(rows, term.columns.cols());
+  columns.middleRows(model.observables.first(term.block), term.columns.rows()) = strength * term.columns;
+  return compare(model, budget, columns, Matrix::Zero(rows, rows));
+}
+
+}  // namespace calx::infer

@@ -1,0 +1,137 @@
+#include "infer/linearise.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "infer/budget.hpp"
+#include "infer/denoise.hpp"
+
+namespace calx::infer {
+
+namespace {
+
+constexpr double step = 1;  // of a central difference, in prior sd
+
+std::vector<RunPoint> base_points(const Vector& u, int count, std::uint64_t& seed) {
+  std::vector<RunPoint> points;
+  for (int k = 0; k < count; ++k) points.push_back({u, -1, {}, seed++});
+  return points;
+}
+
+/// Variance, over that of one run, of changed - base - rho * (partner - base), without the response.
+double prediction_variance(double rho, double base_weight) {
+  return 1 - rho * rho + (1 - rho) * (1 - rho) * base_weight;
+}
+
+/// Most probable correlation of runs of one seed: each run with a change is predicted from the unchanged run of its
+/// seed as mean + rho * (unchanged - mean), a control variate.
+double estimate_common(const Denoiser& denoise, const std::vector<Vector>& changed, const Vector& partner,
+                       const Vector& base, double base_weight) {
+  double best = 0, best_evidence = -1e300;
+  for (double rho : {0.0, 0.3, 0.5, 0.65, 0.8, 0.9, 0.95, 0.99}) {
+    double evidence = 0;
+    for (const Vector& run : changed)
+      denoise(run - base - rho * (partner - base), prediction_variance(rho, base_weight), &evidence);
+    if (evidence > best_evidence) best = rho, best_evidence = evidence;
+  }
+  return best;
+}
+
+}  // namespace
+
+int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options) {
+  int runs = 1 + 2 * parameters;
+  for (int n : options.base_runs) runs += n;
+  for (const Effect& effect : effects) runs += effect.instrument ? 0 : effect.components;
+  return runs;
+}
+
+LinearModel linearise(const Observables& observables, const std::vector<Effect>& effects, Simulator& simulator,
+                      const Options& options) {
+  observables.check();
+  LinearModel model;
+  model.observables = observables, model.effects = effects;
+  const int p = simulator.parameters(), rows = observables.rows();
+  std::uint64_t seed = options.seed * 1000 + 1;
+  const std::uint64_t common_seed = options.seed * 1000;
+  model.u = Vector::Zero(p);
+  std::vector<Matrix> groups;
+  std::vector<Vector> places;
+  Matrix differences(rows, p);  // raw
+  model.sensitivities = Matrix::Zero(rows, p);
+  double trace = p, moved = 0;
+
+  for (std::size_t pass = 0; pass < options.base_runs.size(); ++pass) {
+    groups.push_back(simulator.run(base_points(model.u, options.base_runs[pass], seed)));
+    places.push_back(model.u);
+    model.scatter = estimate_scatter(observables, groups);
+    if (pass == 0) {
+      std::vector<RunPoint> points;
+      for (int k = 0; k < p; ++k)
+        for (double sign : {1.0, -1.0}) {
+          points.push_back({model.u, -1, {}, common_seed});
+          points.back().u[k] += sign * step;
+        }
+      const Matrix runs = simulator.run(points);
+      const Denoiser denoise(observables, model.scatter);
+      const double rho = options.common_numbers < 0 ? 0.5 : options.common_numbers;
+      for (int k = 0; k < p; ++k) {
+        differences.col(k) = (runs.col(2 * k) - runs.col(2 * k + 1)) / (2 * step);
+        model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * step * step));
+      }
+    }
+    // Earlier groups are carried here by the sensitivities, and weigh the less the farther away they are.
+    Vector sum = Vector::Zero(rows);
+    double weight = 0, square = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const double count = static_cast<double>(groups[g].cols()), near = (model.u - places[g]).squaredNorm();
+      const double w = count / (1 + count * near);
+      sum += w * (groups[g].rowwise().mean() + model.sensitivities * (model.u - places[g]));
+      weight += w, square += w * w / count;
+    }
+    model.base = sum / weight;
+    model.base_weight = square / (weight * weight);
+    model.sensitivity_weight = (1 - 0.5) / (2 * step * step) * (moved + trace);
+    const Budget budget = error_budget(model, options);
+    const NuisanceFit fit = fit_nuisance(model, budget, options);
+    moved = (fit.u - model.u).squaredNorm(), trace = fit.covariance.trace();
+    if (pass + 1 < options.base_runs.size()) model.u = fit.u;
+  }
+
+  std::vector<RunPoint> points = {{model.u, -1, {}, common_seed}};
+  for (std::size_t e = 0; e < effects.size(); ++e)
+    for (int c = 0; c < effects[e].components && !effects[e].instrument; ++c)
+      points.push_back({model.u, static_cast<int>(e),
+                        options.step_scales * effects[e].scale * Vector::Unit(effects[e].components, c), common_seed});
+  const Matrix runs = simulator.run(points);
+  std::vector<Vector> changed;
+  for (int k = 1; k < runs.cols(); ++k) changed.push_back(runs.col(k));
+  const Denoiser denoise(observables, model.scatter);
+  model.common_numbers = options.common_numbers >= 0
+                             ? options.common_numbers
+                             : estimate_common(denoise, changed, runs.col(0), model.base, model.base_weight);
+  const double rho = model.common_numbers, variance = prediction_variance(rho, model.base_weight);
+  std::size_t next = 0;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    Matrix columns(rows, effects[e].components);
+    for (int c = 0; c < effects[e].components; ++c) {
+      const double amplitude = options.step_scales * effects[e].scale;
+      if (effects[e].instrument) {
+        const RunPoint point{model.u, static_cast<int>(e), amplitude * Vector::Unit(effects[e].components, c),
+                             common_seed};
+        columns.col(c) = simulator.instrument(point) / amplitude;
+      } else {
+        const Vector response = changed[next++] - model.base - rho * (runs.col(0) - model.base);
+        columns.col(c) = denoise(response, variance) / amplitude;
+      }
+    }
+    model.signatures.push_back(columns);
+  }
+  for (int k = 0; k < p; ++k)
+    model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * step * step));
+  model.sensitivity_weight = (1 - rho) / (2 * step * step) * (moved + trace);
+  model.runs = planned_runs(effects, p, options);
+  return model;
+}
+
+}  // namespace calx::infer

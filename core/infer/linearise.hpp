@@ -1,0 +1,36 @@
+// linearise.hpp: the model as a plane around a re-based fit: base mean, sensitivities, signatures.
+#pragma once
+#include <vector>
+
+#include "infer/options.hpp"
+#include "infer/seed_scatter.hpp"
+#include "infer/simulator.hpp"
+
+namespace calx::infer {
+
+/// Observables near u are base + J (u' - u) + sum of amplitude * signature.
+struct LinearModel {
+  Observables observables;
+  std::vector<Effect> effects;
+  Vector u;                        // where it is linear, standardised
+  Vector base;                     // mean over seeds
+  Matrix sensitivities;            // one column per nuisance parameter, per prior sd
+  std::vector<Matrix> signatures;  // per effect, a column per component, per unit of amplitude
+  SeedScatter scatter;
+  double common_numbers = 0;      // correlation of runs of one seed
+  double base_weight = 1;         // variance of the base mean over that of one run
+  double sensitivity_weight = 0;  // variance of J (u' - u) over that of one run, at the posterior of u'
+  int runs = 0;
+};
+
+/// Number of runs of a plan.
+int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options);
+
+/// Runs the simulator as planned: base runs with independent seeds before each fit of u to the campaign "fit", central
+/// differences and one run per physical component of an effect with common random numbers. The mean surface wants
+/// independent seeds and differences want common ones (Chen, Ankenman and Nelson 2012). Seeds follow from the seed of
+/// the options. Effects with instrument = true cost no run.
+LinearModel linearise(const Observables& observables, const std::vector<Effect>& effects, Simulator& simulator,
+                      const Options& options);
+
+}  // namespace calx::infer

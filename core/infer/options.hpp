@@ -1,0 +1,41 @@
+// options.hpp: settings of a diagnosis with their presets.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "infer/isotonic.hpp"
+
+namespace calx::infer {
+
+struct Options {
+  std::uint64_t seed = 1;
+
+  // Plan of runs.
+  std::vector<int> base_runs = {3, 4, 11};  // with independent seeds, before each of the re-based fits
+  double step_scales = 2;                   // amplitude of an effect's run, in its scales
+  double common_numbers = -1;               // correlation of runs of one seed, 0..1; -1: estimate it
+
+  // Error budget, in declared measurement sd.
+  double tolerance = 0.35;      // of the model, half white and half smooth
+  double numerical = 0.3;       // time step, scale, domain: constant or smooth per block
+  double declared_error = 0.2;  // relative uncertainty of each declared sd
+  double shape = 0.3;           // relative uncertainty of a signature's shape
+  double shape_length = 0.35;   // of the index
+
+  // Prior shares: nothing, one effect, two effects, something outside the library.
+  double prior_none = 0.35, prior_single = 0.40, prior_pair = 0.05, prior_unknown = 0.20;
+
+  // Decision.
+  double name_above = 0.9;
+  double screen_above = 4.5;   // sd; leave-one-out residuals beyond it are events
+  double gain_above = 3;       // nats of held-out log score
+  double fit_above = 0.01;     // p of the fit test
+  double global_above = 0.05;  // p below which "no discrepancy shown" is not said
+  int nulls = 400;             // simulated data sets behind every p
+  IsotonicMap calibration;     // of stated probabilities; empty: none
+
+  // Parts of the method that tests switch off to see the result get worse.
+  bool recalibrate = true, seed_scatter = true, unknown_rival = true, pairs = true, stacking = true;
+};
+
+}  // namespace calx::infer

@@ -1,0 +1,246 @@
+#include "study/measured.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "base/error.hpp"
+#include "base/nearest.hpp"
+#include "base/units.hpp"
+#include "study/column.hpp"
+
+namespace calx {
+namespace {
+
+/// Share of the scatter of one repeat that a model may miss when the study declares no tolerance: half of it is not
+/// worth explaining, and zero would make the posterior narrower than any model deserves. House rule.
+constexpr double kPresetTolerance = 0.35;
+
+struct NoiseModel {
+  double sd = 0, relative = 0;  // absolute, in the observable's unit; share of the value
+  bool given = false;
+};
+
+NoiseModel read_noise(Object& m, const std::string& unit) {
+  NoiseModel out;
+  if (const auto n = m.find("sd")) out.sd = n->number(unit, Allow::above_zero), out.given = true;
+  if (const auto n = m.find("relative")) out.relative = n->number("1", Allow::above_zero), out.given = true;
+  return out;
+}
+
+double sd_at(const NoiseModel& noise, double y) { return std::hypot(noise.sd, noise.relative * y); }
+
+std::vector<double> numbers(const Node& node, const std::string& unit) {
+  std::vector<double> out;
+  for (const Node& n : node.items("numbers")) out.push_back(n.number(unit));
+  return out;
+}
+
+void too_few(const Node& node, std::size_t count) {
+  node.fail("an sd cannot be estimated from " + std::to_string(count) + (count == 1 ? " repeat" : " repeats") +
+            "; at least 2 are needed, or give \"sd\" (of one repeat)");
+}
+
+/// Values of one scalar: mean, and the sd of one repeat from the scatter unless it is given.
+void from_repeats(const Node& node, const std::vector<double>& values, const NoiseModel& noise, MeasuredData& data) {
+  double mean = 0, square = 0;
+  for (const double v : values) mean += v / static_cast<double>(values.size());
+  for (const double v : values) square += (v - mean) * (v - mean);
+  data.y = {mean};
+  data.repeats = values.size();
+  if (noise.given) {
+    data.sd = {sd_at(noise, mean)};
+    return;
+  }
+  if (values.size() < 2) too_few(node, values.size());
+  data.sd = {std::sqrt(square / static_cast<double>(values.size() - 1))};
+  data.sd_estimated = true;
+  if (!(data.sd[0] > 0)) node.fail("all repeats are equal, so that no scatter can be seen; give \"sd\"");
+}
+
+struct File {
+  Table table;
+  std::string name;
+  const Node* node;
+
+  std::size_t column(const Node& at, const std::string& name_) const {
+    const auto it = std::find(table.columns.begin(), table.columns.end(), name_);
+    if (it == table.columns.end())
+      at.fail("\"" + name_ + "\" is no column of " + name + "; " + did_you_mean(name_, table.columns));
+    return static_cast<std::size_t>(it - table.columns.begin());
+  }
+  [[noreturn]] void refuse(std::size_t row, const std::string& what) const {
+    throw Error(Fault::settings, name + " line " + std::to_string(table.lines[row]) + ": " + what);
+  }
+  double value(std::size_t row, std::size_t column_) const {
+    const double v = table.rows[row][column_];
+    if (!std::isfinite(v))
+      refuse(row, "column \"" + table.columns[column_] + "\" holds no finite number; take the row out or repair it");
+    return v;
+  }
+};
+
+/// Column's factor to a unit; a column whose name ends in no unit is taken to be in it.
+double factor_of(const Node& node, const std::string& column, const std::string& to) {
+  const std::string from = column_unit(column);
+  return from.empty() ? 1 : unit_factor(node, from, to, "column \"" + column + "\"");
+}
+
+struct Repeat {
+  std::vector<double> x, y;
+};
+
+/// Rows by repeat, x rising strictly within each.
+std::vector<Repeat> repeats_of(Object& m, const File& file, const StudyObservable& o) {
+  const Node y_node = m.need("y", "the column with the measured values");
+  const std::string y_name = y_node.text("a column of the file");
+  const std::size_t y = file.column(y_node, y_name);
+  const double y_factor = factor_of(y_node, y_name, o.unit);
+  std::size_t x = 0, group = 0;
+  double x_factor = 1;
+  const auto x_node = m.find("x"), repeat_node = m.find("repeat");
+  if (!o.against.empty()) {
+    if (!x_node) m.need("x", "the column with the places of the measured values");
+    const std::string name = x_node->text("a column of the file");
+    x = file.column(*x_node, name);
+    const std::string to = column_unit(o.against);
+    if (!to.empty()) x_factor = factor_of(*x_node, name, to);
+  } else if (x_node) {
+    x_node->fail("the observable is a last value; name the column it is measured \"against\" to make it a curve");
+  }
+  if (repeat_node) group = file.column(*repeat_node, repeat_node->text("a column of the file"));
+  std::map<double, Repeat> by_repeat;
+  for (std::size_t r = 0; r < file.table.rows.size(); ++r) {
+    Repeat& to = by_repeat[repeat_node ? file.value(r, group) : 0];
+    to.y.push_back(y_factor * file.value(r, y));
+    if (o.against.empty()) continue;
+    const double at = x_factor * file.value(r, x);
+    if (!to.x.empty() && !(at > to.x.back()))
+      file.refuse(r, "\"" + file.table.columns[x] + "\" " + (at == to.x.back() ? "repeats" : "falls below") +
+                         " the value of the row before; it must rise within a repeat" +
+                         (repeat_node ? "" : ", or name the column that tells repeats apart in \"repeat\""));
+    to.x.push_back(at);
+  }
+  std::vector<Repeat> out;
+  for (auto& one : by_repeat) out.push_back(std::move(one.second));
+  return out;
+}
+
+void from_file(Object& m, const Node& file_node, StudyObservable& o) {
+  const std::string given = file_node.text("the path of a CSV file");
+  const std::string path = file_node.document().absolute_path(given);
+  File file;
+  try {
+    file = {parse_table(read_text_file(path), given), given, &file_node};
+  } catch (const Error& e) {
+    throw Error(e.fault(), e.fault() == Fault::files
+                               ? file_node.document().file() + " " + file_node.pointer() + ": " + e.what()
+                               : e.what());
+  }
+  const NoiseModel noise = read_noise(m, o.unit);
+  std::vector<Repeat> repeats = repeats_of(m, file, o);
+  MeasuredData& data = o.measured;
+  data.source = path;
+  if (o.against.empty()) {
+    std::vector<double> values;
+    for (const Repeat& r : repeats) values.insert(values.end(), r.y.begin(), r.y.end());
+    from_repeats(file_node, values, noise, data);
+    return;
+  }
+  data.x = repeats[0].x;
+  data.repeats = repeats.size();
+  for (std::size_t k = 1; k < repeats.size(); ++k)
+    if (repeats[k].x != data.x)
+      file_node.fail("repeat " + std::to_string(k + 1) + " of " + given +
+                     " is measured at other places than the first; all repeats need the same");
+  if (!noise.given && repeats.size() < 2) too_few(file_node, repeats.size());
+  // The scatter of a curve is pooled over its places: a few repeats say little about each.
+  double pooled = 0;
+  const double n = static_cast<double>(repeats.size());
+  for (std::size_t k = 0; k < data.x.size(); ++k) {
+    double mean = 0;
+    for (const Repeat& r : repeats) mean += r.y[k] / n;
+    for (const Repeat& r : repeats) pooled += (r.y[k] - mean) * (r.y[k] - mean);
+    data.y.push_back(mean);
+  }
+  pooled = std::sqrt(pooled / (std::max(n - 1, 1.0) * static_cast<double>(data.x.size())));
+  data.sd_estimated = !noise.given;
+  if (data.sd_estimated && !(pooled > 0)) file_node.fail("all repeats are equal; give \"sd\"");
+  for (const double y : data.y) data.sd.push_back(noise.given ? sd_at(noise, y) : pooled);
+}
+
+void from_values(Object& m, const Node& node, const std::vector<double>& at, StudyObservable& o) {
+  const NoiseModel noise = read_noise(m, o.unit);
+  MeasuredData& data = o.measured;
+  const auto one = m.find("value"), many = m.find("values");
+  if (!one && !many) node.fail("holds no \"value\", \"values\" or \"file\"; a measured value is needed");
+  if (one && many) many->fail("stands beside \"value\"; give one of them");
+  std::size_t repeats = 1;
+  if (const auto n = m.find("repeats")) {
+    repeats = static_cast<std::size_t>(n->whole(1));
+    if (many && at.empty() && repeats != many->items("numbers").size())
+      n->fail("\"values\" already tells how many repeats there are; take \"repeats\" away");
+  }
+  const std::vector<double> y = many ? numbers(*many, o.unit) : std::vector<double>{one->number(o.unit)};
+  if (y.empty()) many->fail("is empty; at least one measured value is needed");
+  if (at.empty()) {
+    if (!o.against.empty()) node.fail("a curve needs \"at\", the places of its values, or a \"file\"");
+    from_repeats(many ? *many : *one, y, noise, data);
+    if (!many) data.repeats = repeats;
+    return;
+  }
+  if (o.against.empty()) node.fail("\"at\" needs \"against\", the column it belongs to");
+  if (y.size() != at.size())
+    node.fail("holds " + std::to_string(y.size()) + " values for " + std::to_string(at.size()) + " places in \"at\"");
+  if (!noise.given) node.fail("values of a curve need \"sd\" (of one repeat) or \"relative\"");
+  data.x = at;
+  data.y = y;
+  data.repeats = repeats;
+  for (const double v : y) data.sd.push_back(sd_at(noise, v));
+}
+
+}  // namespace
+
+double unit_factor(const Node& node, const std::string& from, const std::string& to, const std::string& what) {
+  try {
+    const Unit a = parse_unit(from), b = parse_unit(to);
+    if (!same_dimension(a, b))
+      node.fail(what + " is in " + from + ", which measures a " + dimension_name(a) + "; a " + dimension_name(b) +
+                " in " + to + " is needed");
+    return a.factor / b.factor;
+  } catch (const Error& e) {
+    if (std::string(e.what()).compare(0, 5, "unit ") == 0) node.fail(e.what());
+    throw;
+  }
+}
+
+void read_measured(Object& observable, StudyObservable& o) {
+  const Node node = observable.need("measured", "what was measured: {\"value\": 40.5, \"sd\": 0.5}");
+  std::vector<double> at;
+  if (const auto n = observable.find("at")) {
+    const std::string unit = column_unit(o.against);
+    at = numbers(*n, unit.empty() ? "1" : unit);
+    for (std::size_t k = 1; k < at.size(); ++k)
+      if (!(at[k] > at[k - 1])) n->fail("the places must rise; value " + std::to_string(k) + " does not");
+  }
+  Object m(node, "measured data");
+  if (const auto file = m.find("file")) {
+    if (!at.empty()) node.fail("\"at\" gives the places of values that stand in the study; a file brings its own");
+    from_file(m, *file, o);
+  } else {
+    from_values(m, node, at, o);
+  }
+  if (const auto n = m.find("autocorrelation")) {
+    o.measured.correlation = n->number("1");
+    if (!(std::fabs(o.measured.correlation) < 1))
+      n->fail(format_number(o.measured.correlation) + " is out of range; must lie between -1 and 1");
+  }
+  m.done();
+  double mean_sd = 0;
+  for (const double s : o.measured.sd) mean_sd += s / static_cast<double>(o.measured.sd.size());
+  const auto declared = observable.find("tolerance");
+  o.tolerance = declared ? declared->number(o.unit, Allow::not_negative) : kPresetTolerance * mean_sd;
+}
+
+}  // namespace calx

@@ -1,0 +1,14 @@
+// measured.hpp: reads the measured data of one observable. Private to study/.
+#pragma once
+#include "config/node.hpp"
+#include "study/study.hpp"
+
+namespace calx {
+
+/// Fills o.measured and o.tolerance from the key "measured" (and "at", "tolerance") of the observable's object.
+void read_measured(Object& observable, StudyObservable& o);
+
+/// Factor from one unit to another. Throws Error(Fault::settings) through node when they measure different things.
+double unit_factor(const Node& node, const std::string& from, const std::string& to, const std::string& what);
+
+}  // namespace calx

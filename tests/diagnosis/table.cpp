@@ -1,0 +1,205 @@
+#include "diagnosis/table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace calx::diagnosis {
+
+namespace {
+
+/// P(X >= k), X binomial.
+double at_least(int k, int n, double p) {
+  double sum = 0;
+  for (int i = k; i <= n; ++i)
+    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) + i * std::log(p) +
+                    (n - i) * std::log1p(-p));
+  return sum;
+}
+
+/// The p at which P(X >= k) is `wanted`.
+double solve(int k, int n, double wanted) {
+  double low = 1e-12, high = 1 - 1e-12;
+  for (int pass = 0; pass < 60; ++pass) {
+    const double p = 0.5 * (low + high);
+    (at_least(k, n, p) < wanted ? low : high) = p;
+  }
+  return low;
+}
+
+const char* kind_name(Kind kind) {
+  constexpr std::array<const char*, 4> names = {"nothing", "one effect", "two effects", "outside library"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+bool right(const Outcome& o) { return o.diagnosis.named == o.truth.effects && !o.truth.effects.empty(); }
+
+bool wrong(const Outcome& o) {
+  for (std::size_t e : o.diagnosis.named)
+    if (std::find(o.truth.effects.begin(), o.truth.effects.end(), e) == o.truth.effects.end()) return true;
+  return false;
+}
+
+}  // namespace
+
+double Rate::low() const { return k == 0 ? 0 : solve(k, n, 0.025); }
+double Rate::high() const { return k == n ? 1 : solve(k + 1, n, 0.975); }
+
+Table tabulate(const std::vector<Outcome>& outcomes) {
+  Table t;
+  int sets = 0;
+  for (const Outcome& o : outcomes) {
+    const infer::Diagnosis& d = o.diagnosis;
+    const bool named = d.verdict == infer::Verdict::named, unknown = d.verdict == infer::Verdict::unknown;
+    t.most_runs = std::max(t.most_runs, o.runs);
+    t.practice_named.add(o.common_practice_named);
+    if (o.truth.kind == Kind::control) {
+      t.control_named.add(named);
+      t.control_unknown.add(unknown);
+    } else if (o.truth.kind == Kind::single) {
+      t.single_wrong.add(wrong(o));
+      t.single_right.add(right(o));
+      t.practice_right.add(o.common_practice_right);
+      if (o.truth.delta >= 5 && o.truth.separability >= 4) t.clear_right.add(right(o));
+      bool inside = false;
+      for (std::size_t e : d.set) inside = inside || e == o.truth.effects[0];
+      t.in_set.add(inside);
+      t.set_size += static_cast<double>(d.set.size()), ++sets;
+      if (right(o)) {
+        const infer::SingleFit& fit = d.posterior.fits[o.truth.effects[0]];
+        const Vector& amplitude = o.truth.amplitudes[o.truth.effects[0]];
+        // A vector counts by its part along the fitted direction.
+        const double along = amplitude.size() == 1 ? amplitude[0] : amplitude.dot(fit.amplitude) / fit.amplitude.norm();
+        t.covered.add(along >= fit.low && along <= fit.high);
+      }
+    } else if (o.truth.kind == Kind::outside) {
+      t.outside_named.add(named);
+      if (o.truth.delta >= 8) t.outside_flagged.add(unknown);
+    } else {
+      t.pair_right.add(right(o));
+      t.pair_wrong.add(wrong(o));
+    }
+    for (std::size_t e = 0; e < d.probability.size(); ++e)
+      if (d.probability[e] >= 0.97)
+        t.sure_true.add(std::find(o.truth.effects.begin(), o.truth.effects.end(), e) != o.truth.effects.end());
+  }
+  if (sets > 0) t.set_size /= sets;
+  return t;
+}
+
+std::string describe(const std::vector<Outcome>& outcomes) {
+  const Table t = tabulate(outcomes);
+  std::string text;
+  char line[300];
+  const auto row = [&](const char* what, const Rate& r, const char* goal) {
+    std::snprintf(line, sizeof line, "%-58s %4d/%-4d %6.2f %% (%5.2f..%6.2f)   goal %s\n", what, r.k, r.n,
+                  100 * r.share(), 100 * r.low(), 100 * r.high(), goal);
+    text += line;
+  };
+  row("a cause named when nothing is wrong", t.control_named, "<= 0.5");
+  row("outside the library said when nothing is wrong", t.control_unknown, "<= 1");
+  row("library effect named wrongly", t.single_wrong, "<= 1");
+  row("outside the library named as something", t.outside_named, "<= 2");
+  row("library effect, delta 3 to 15, named right", t.single_right, ">= 70");
+  row("... delta >= 5 and separable >= 4", t.clear_right, ">= 90");
+  row("truth inside the 95 % set", t.in_set, ">= 95");
+  std::snprintf(line, sizeof line, "%-58s %6.2f%35s goal <= 2\n", "mean size of that set", t.set_size, "");
+  text += line;
+  row("outside the library, delta >= 8, said so", t.outside_flagged, ">= 80");
+  row("both of a pair named", t.pair_right, ">= 50");
+  row("anything wrong about a pair", t.pair_wrong, "(<= 2)");
+  row("stated probability >= 0.97 is true", t.sure_true, ">= 97");
+  row("90 % intervals of named amplitudes cover", t.covered, "85..95");
+  row("common practice: single effect right", t.practice_right, "(contrast)");
+  row("common practice: a cause named, all studies", t.practice_named, "(contrast)");
+  std::snprintf(line, sizeof line, "%-58s %6d%36s goal <= 44\n", "most runs of a study", t.most_runs, "");
+  text += line;
+
+  text += "\ntruth             n   right  part  wrong |  none ambig unknown\n";
+  for (Kind kind : {Kind::control, Kind::single, Kind::pair, Kind::outside}) {
+    std::array<int, 7> n{};
+    for (const Outcome& o : outcomes) {
+      if (o.truth.kind != kind) continue;
+      ++n[0];
+      if (o.diagnosis.verdict == infer::Verdict::named)
+        ++n[right(o) ? 1 : wrong(o) ? 3 : 2];
+      else
+        ++n[o.diagnosis.verdict == infer::Verdict::none ? 4 : o.diagnosis.verdict == infer::Verdict::ambiguous ? 5 : 6];
+    }
+    std::snprintf(line, sizeof line, "%-15s %4d  %5d %5d %5d  | %5d %5d %5d\n", kind_name(kind), n[0], n[1], n[2], n[3],
+                  n[4], n[5], n[6]);
+    text += line;
+  }
+  std::map<std::string, std::map<std::string, int>> by;
+  const std::vector<infer::Effect> library = effect_library();
+  for (const Outcome& o : outcomes) {
+    if (o.truth.kind != Kind::single && o.truth.kind != Kind::outside) continue;
+    const std::string truth =
+        o.truth.kind == Kind::single ? library[o.truth.effects[0]].id : std::string("* ") + alien_name(o.truth.alien);
+    std::string said = infer::name(o.diagnosis.verdict);
+    if (said == "named") {
+      said = right(o) ? "RIGHT" : "";
+      if (said.empty())
+        for (std::size_t e : o.diagnosis.named) said += "[" + library[e].id + "]";
+    }
+    ++by[truth][said];
+  }
+  text += "\n";
+  for (const auto& [truth, said] : by) {
+    std::snprintf(line, sizeof line, "%-32s", truth.c_str());
+    text += line;
+    for (const auto& [what, count] : said) text += " " + what + " " + std::to_string(count) + ";";
+    text += "\n";
+  }
+  constexpr std::array<double, 9> edges = {0, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 1.01};
+  text += "\nstated probability of a cause, and how often it was true\n";
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    Rate r;
+    double sum = 0;
+    for (const Outcome& o : outcomes)
+      for (std::size_t e = 0; e < o.diagnosis.probability.size(); ++e) {
+        const double p = o.diagnosis.probability[e];
+        if (p < edges[k] || p >= edges[k + 1]) continue;
+        sum += p;
+        r.add(std::find(o.truth.effects.begin(), o.truth.effects.end(), e) != o.truth.effects.end());
+      }
+    std::snprintf(line, sizeof line, "%4.2f..%4.2f  stated %5.3f  true %5.3f  of %d\n", edges[k], edges[k + 1],
+                  r.n ? sum / r.n : 0, r.share(), r.n);
+    text += line;
+  }
+  return text;
+}
+
+std::string list_studies(const std::vector<Outcome>& outcomes) {
+  const std::vector<infer::Effect> library = effect_library();
+  std::string text;
+  char line[400];
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    const Outcome& o = outcomes[k];
+    const infer::Diagnosis& d = o.diagnosis;
+    std::string truth = kind_name(o.truth.kind);
+    for (std::size_t e : o.truth.effects) truth += " [" + library[e].id + "]";
+    if (o.truth.alien != alien_count) truth += std::string(" * ") + alien_name(o.truth.alien);
+    std::string leading;
+    for (std::size_t e = 0; e < library.size(); ++e) {
+      const double p = d.posterior.inclusion[e];
+      if (p < 0.05) continue;
+      std::snprintf(line, sizeof line, " %s=%.3f(%.3f)", library[e].id.c_str(), p, d.fitted.inclusion[e]);
+      leading += line;
+    }
+    std::snprintf(line, sizeof line,
+                  "%zu|%s|%.1f|%.1f|%s%s|none %.3f(%.3f)|unknown %.3f(%.3f)|gain %.1f|before %.3f|after %.3f|%s\n", k,
+                  truth.c_str(), o.truth.delta, o.truth.separability,
+                  right(o)   ? "RIGHT "
+                  : wrong(o) ? "WRONG "
+                             : "",
+                  infer::name(d.verdict), d.posterior.none, d.fitted.none, d.posterior.unknown, d.fitted.unknown,
+                  d.gain.log_score, d.before.p, d.after.p, leading.c_str());
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace calx::diagnosis
