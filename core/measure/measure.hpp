@@ -52,7 +52,8 @@ class Sensor {
 };
 
 /// Built-in kinds: mass, cycle-mass, flow, bulk-density, coordination, height-map, angle-of-repose, residue, part-load,
-/// energy, mass-ledger. Throws Error(Fault::settings) for an unknown kind (nearest name) or bad keys.
+/// stress, cell-density, wall-friction, yield-locus, energy, mass-ledger. Throws Error(Fault::settings) for an unknown
+/// kind (nearest name) or bad keys.
 bool is_builtin_sensor(const std::string& kind);
 std::unique_ptr<Sensor> make_sensor(const SensorSettings& settings, const CaseSettings& world);
 /// A plugin's sensor; table and instance outlive it.

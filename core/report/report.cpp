@@ -12,6 +12,7 @@ std::string write_report(const std::string& dir) {
   sections.header();
   sections.overview();
   sections.pictures();
+  sections.lab();
   sections.dosing();
   sections.pile();
   sections.ledgers();

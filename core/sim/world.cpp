@@ -219,6 +219,20 @@ void World::place_parts(double t) {
   }
 }
 
+void World::advance_servos(double t) {
+  if (!motions.has_servo()) return;
+  moved_loads.clear();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const EnginePart& part = engine.parts[k];
+    if (walls[k].motion >= 0 && part.present)
+      moved_loads.push_back({walls[k].motion, part.pose.centre, part.force, part.torque});
+  }
+  const auto [failed, status] = motions.advance(t, dt, moved_loads);
+  if (failed < 0) return;
+  const auto k = static_cast<std::size_t>(failed);
+  motion_instances[k]->check(status, c.file, c.motions[k].pointer, "advance");
+}
+
 void World::set_present(const std::string& part, bool present, double) {
   engine.parts[part_number(part)].present = present;
   say("part \"" + part + (present ? "\" appears" : "\" is removed"));
