@@ -20,6 +20,10 @@ std::unique_ptr<Sensor> make_drum_surface_sensor(SensorOptions& options);
 std::unique_ptr<Sensor> make_inertial_number_sensor(SensorOptions& options);
 std::unique_ptr<Sensor> make_residue_sensor(SensorOptions& options);
 std::unique_ptr<Sensor> make_part_load_sensor(SensorOptions& options);
+std::unique_ptr<Sensor> make_stress_sensor(SensorOptions& options);
+std::unique_ptr<Sensor> make_cell_density_sensor(SensorOptions& options);
+std::unique_ptr<Sensor> make_wall_friction_sensor(SensorOptions& options);
+std::unique_ptr<Sensor> make_yield_locus_sensor(SensorOptions& options);
 std::unique_ptr<Sensor> make_energy_sensor(SensorOptions& options);
 std::unique_ptr<Sensor> make_mass_ledger_sensor(SensorOptions& options);
 

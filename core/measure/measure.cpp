@@ -26,6 +26,10 @@ const Kind kinds[] = {{"mass", make_mass_sensor},
                       {"inertial-number", make_inertial_number_sensor},
                       {"residue", make_residue_sensor},
                       {"part-load", make_part_load_sensor},
+                      {"stress", make_stress_sensor},
+                      {"cell-density", make_cell_density_sensor},
+                      {"wall-friction", make_wall_friction_sensor},
+                      {"yield-locus", make_yield_locus_sensor},
                       {"energy", make_energy_sensor},
                       {"mass-ledger", make_mass_ledger_sensor}};
 

@@ -155,25 +155,45 @@ const MotionSettings& SensorOptions::required_motion(const std::string& key) {
   return named(world_.motions, name);
 }
 
-std::vector<const RegionSettings*> SensorOptions::regions(const std::string& key) {
-  std::vector<const RegionSettings*> found;
+std::vector<std::string> SensorOptions::words_of(const std::string& key, const char* what,
+                                                 const std::vector<std::string>& known) {
+  std::vector<std::string> found;
   const Json* value = impl_->find(key);
-  if (!value) {
-    for (const RegionSettings& region : world_.regions)
-      if (region.is_named) found.push_back(&region);
-    return found;
-  }
-  if (!value->is_array()) throw error(key, value->dump() + " is not an array of region names");
-  const std::vector<std::string> known = names_of(world_.regions);
+  if (!value) return found;
+  if (!value->is_array()) throw error(key, value->dump() + " is not an array of " + what + " names");
   for (std::size_t k = 0; k < value->size(); ++k) {
     const std::string place = key + "/" + std::to_string(k);
     const Json& item = (*value)[k];
-    if (!item.is_string()) throw error(place, item.dump() + " is not the name of a region");
-    const std::string name = item.get<std::string>();
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw error(place, "unknown region " + quoted(name) + "; " + did_you_mean(name, known));
-    found.push_back(&named(world_.regions, name));
+    if (!item.is_string()) throw error(place, item.dump() + " is not the name of a " + what);
+    found.push_back(item.get<std::string>());
+    if (std::find(known.begin(), known.end(), found.back()) == known.end())
+      throw error(place, "unknown " + std::string(what) + " " + "\"" + found.back() + "\"" + "; " +
+                             did_you_mean(found.back(), known));
   }
+  return found;
+}
+
+std::vector<const RegionSettings*> SensorOptions::regions(const std::string& key) {
+  std::vector<const RegionSettings*> found;
+  for (const std::string& name : words_of(key, "region", names_of(world_.regions)))
+    found.push_back(&named(world_.regions, name));
+  if (has(key)) return found;
+  for (const RegionSettings& region : world_.regions)
+    if (region.is_named) found.push_back(&region);
+  return found;
+}
+
+std::vector<const PartSettings*> SensorOptions::parts(const std::string& key) {
+  std::vector<const PartSettings*> found;
+  for (const std::string& name : words_of(key, "part", names_of(world_.parts)))
+    found.push_back(&named(world_.parts, name));
+  return found;
+}
+
+std::vector<std::size_t> SensorOptions::choices(const std::string& key, const std::vector<std::string>& names) {
+  std::vector<std::size_t> found;
+  for (const std::string& word : words_of(key, "choice", names))
+    found.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), word) - names.begin()));
   return found;
 }
 

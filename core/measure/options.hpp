@@ -34,6 +34,10 @@ class SensorOptions {
   const PartSettings* part(const std::string& key);
   /// The name of an event of the case; empty when the key is absent.
   std::string event(const std::string& key);
+  /// The parts listed; empty when the key is absent.
+  std::vector<const PartSettings*> parts(const std::string& key);
+  /// Places in names of the words listed; empty when the key is absent.
+  std::vector<std::size_t> choices(const std::string& key, const std::vector<std::string>& names);
   const MotionSettings& required_motion(const std::string& key);
   /// The regions listed, or when the key is absent all that the case names, in its order.
   std::vector<const RegionSettings*> regions(const std::string& key);
@@ -45,6 +49,7 @@ class SensorOptions {
 
  private:
   struct Impl;
+  std::vector<std::string> words_of(const std::string& key, const char* what, const std::vector<std::string>& known);
   std::string name_of(const std::string& key, const char* what, const std::vector<std::string>& known);
   Error missing(const std::string& key, const std::string& what) const;
 

@@ -8,7 +8,8 @@
 
 #include "base/state.hpp"
 #include "base/vec3.hpp"
-#include "calx/motion.h"
+#include "calx/servo.h"
+#include "calx/state.h"
 #include "config/settings.hpp"
 
 namespace calx {
@@ -27,7 +28,14 @@ struct Pose {
   Vec3 velocity_at(const Vec3& world) const { return velocity + cross(spin, world - centre); }
 };
 
-/// Every motion of a case; a motion without start event runs from t = 0, others rest until started. [main]
+/// What particles do to a part: force N and torque N m about its centre (m), world frame, of the last contacts.
+struct MovedLoad {
+  int motion = -1;  // of the part
+  Vec3 centre, force, torque;
+};
+
+/// Every motion of a case: pure functions of time and servos, which react to loads. A motion without start event runs
+/// from t = 0, others rest until started. [main]
 class MotionSet {
  public:
   /// table and instance outlive the set. Returns the motion's index. carried_by: index of the motion applied on top of
@@ -35,14 +43,23 @@ class MotionSet {
   /// circle.
   int add(const std::string& name, const calx_motion* table, const calx_instance* instance, bool waits_for_start,
           int carried_by);
+  /// The same for a servo; its state is kept in the instance, and saved through the other table.
+  int add_servo(const std::string& name, const calx_servo* servo, const calx_state* state, calx_instance* instance,
+                const calx_host* host, bool waits_for_start, int carried_by);
+  bool has_servo() const;
+  /// Takes every started servo from its pose one step before to that at time t, s; dt later than the pose before. A
+  /// servo feels its own parts and those of motions it carries. Returns the number of the servo that failed and its
+  /// status, or {-1, CALX_OK}.
+  std::pair<int, calx_status> advance(double t, double dt, const std::vector<MovedLoad>& loads);
   int find(const std::string& name) const;  // -1: none
   std::size_t count() const { return motions_.size(); }
   /// Starts a waiting motion at time t, s; a second start is ignored.
   void start(int motion, double t);
   bool started(int motion) const { return motions_[static_cast<std::size_t>(motion)].started; }
   double start_time(int motion) const { return motions_[static_cast<std::size_t>(motion)].start; }
-  /// World pose at time t; motion -1 stands still at the origin. angle and cycle are the motion's own, without what
-  /// carries it. Throws Error(Fault::plugin) when the plugin fails or returns a pose that is no rigid motion.
+  /// World pose at time t, for a servo its present one; motion -1 stands still at the origin. angle and cycle are the
+  /// motion's own, without what carries it. Throws Error(Fault::plugin) when the plugin fails or returns a pose that is
+  /// no rigid motion.
   Pose pose(int motion, double t) const;
   /// True while the pose can still change after t; false while the motion waits for its start.
   bool moving(int motion, double t) const;
@@ -56,13 +73,19 @@ class MotionSet {
  private:
   struct Entry {
     std::string name;
-    const calx_motion* table = nullptr;
+    const calx_motion* table = nullptr;  // null: a servo
+    const calx_servo* servo = nullptr;
+    const calx_state* state = nullptr;
+    const calx_host* host = nullptr;
+    calx_instance* servo_instance = nullptr;
     const calx_instance* instance = nullptr;
     bool started = false;
     double start = 0;
     int carried_by = -1;
   };
+  int add(Entry e);
   const Entry& entry(int motion) const;
+  bool carries(int carrier, int motion) const;
   Pose own_pose(const Entry& e, double t) const;
   double own_top_speed(const Entry& e, double radius) const;
   double pivot_reach(int motion, int carrier) const;

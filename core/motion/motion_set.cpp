@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/plugin_state.hpp"
 #include "motion/motion.hpp"
 #include "motion/saved_names.hpp"
 
@@ -34,7 +35,27 @@ int MotionSet::add(const std::string& name, const calx_motion* table, const calx
   e.instance = instance;
   e.started = !waits_for_start;
   e.carried_by = carried_by;
-  motions_.push_back(e);
+  return add(e);
+}
+
+int MotionSet::add_servo(const std::string& name, const calx_servo* servo, const calx_state* state,
+                         calx_instance* instance, const calx_host* host, bool waits_for_start, int carried_by) {
+  Entry e;
+  e.name = name;
+  e.servo = servo;
+  e.state = state;
+  e.host = host;
+  e.servo_instance = instance;
+  e.instance = instance;
+  e.started = !waits_for_start;
+  e.carried_by = carried_by;
+  return add(e);
+}
+
+int MotionSet::add(Entry e) {
+  const std::string name = e.name;
+  const int carried_by = e.carried_by;
+  motions_.push_back(std::move(e));
   const int added = static_cast<int>(motions_.size()) - 1;
   std::string chain = "\"" + name + "\"";
   for (int k = carried_by; k >= 0 && k <= added; k = motions_[static_cast<std::size_t>(k)].carried_by) {
@@ -70,7 +91,7 @@ void MotionSet::start(int motion, double t) {
 Pose MotionSet::own_pose(const Entry& e, double t) const {
   calx_pose raw{};
   const double since_start = e.started ? t - e.start : 0;
-  const calx_status status = e.table->pose(e.instance, since_start, &raw);
+  const calx_status status = e.servo ? e.servo->pose(e.instance, &raw) : e.table->pose(e.instance, since_start, &raw);
   if (status != CALX_OK)
     throw Error(Fault::plugin, "motion \"" + e.name + "\" at t = " + number(t) +
                                    " s: the plugin gives no pose and returns status " + std::to_string(status));
@@ -109,16 +130,48 @@ Pose MotionSet::pose(int motion, double t) const {
   return p;
 }
 
+bool MotionSet::has_servo() const {
+  return std::any_of(motions_.begin(), motions_.end(), [](const Entry& e) { return e.servo; });
+}
+
+bool MotionSet::carries(int carrier, int motion) const {
+  for (int k = motion; k >= 0; k = entry(k).carried_by)
+    if (k == carrier) return true;
+  return false;
+}
+
+std::pair<int, calx_status> MotionSet::advance(double t, double dt, const std::vector<MovedLoad>& loads) {
+  for (std::size_t k = 0; k < motions_.size(); ++k) {
+    const Entry& e = motions_[k];
+    const int number = static_cast<int>(k);
+    if (!e.servo || !e.started || !(t > e.start)) continue;
+    const Vec3 centre = pose(number, t - dt).centre;
+    Quat turn;
+    for (int c = e.carried_by; c >= 0; c = entry(c).carried_by) turn = own_pose(entry(c), t - dt).turn * turn;
+    Vec3 force, torque;
+    for (const MovedLoad& load : loads) {
+      if (!carries(number, load.motion)) continue;
+      force += load.force;
+      torque += load.torque + cross(load.centre - centre, load.force);
+    }
+    const Vec3 f = rotate(conjugate(turn), force), m = rotate(conjugate(turn), torque);
+    const calx_servo_view view = {sizeof(calx_servo_view), 0, t - e.start, dt, {f.x, f.y, f.z}, {m.x, m.y, m.z}};
+    const calx_status status = e.servo->advance(e.servo_instance, e.host, &view);
+    if (status < 0) return {number, status};
+  }
+  return {-1, CALX_OK};
+}
+
 bool MotionSet::moving(int motion, double t) const {
   for (int k = motion; k >= 0; k = entry(k).carried_by) {
     const Entry& e = entry(k);
-    if (e.started && t - e.start < e.table->duration(e.instance)) return true;
+    if (e.started && (e.servo || t - e.start < e.table->duration(e.instance))) return true;
   }
   return false;
 }
 
 double MotionSet::own_top_speed(const Entry& e, double radius) const {
-  const double speed = e.table->top_speed(e.instance, radius);
+  const double speed = e.servo ? e.servo->top_speed(e.instance, radius) : e.table->top_speed(e.instance, radius);
   if (!(speed >= 0) || !std::isfinite(speed))
     throw Error(Fault::plugin, "motion \"" + e.name + "\": the plugin's top speed within " + number(radius) + " m is " +
                                    number(speed) + " m/s; it must be finite and not negative");
@@ -133,6 +186,13 @@ double MotionSet::pivot_reach(int motion, int carrier) const {
   outer.started = false;
   const Pose rest = own_pose(outer, 0);
   const Vec3 origin = rest.to_part(rest.centre);
+  if (inner.servo) {
+    const double reach = inner.servo->reach(inner.instance);
+    if (!(reach >= 0) || !std::isfinite(reach))
+      throw Error(Fault::plugin, "motion \"" + inner.name + "\": the plugin's reach is " + number(reach) +
+                                     " m; it must be finite and not negative");
+    return norm(own_pose(inner, 0).centre - origin) + reach;
+  }
   if (own_top_speed(inner, 0) == 0) return norm(own_pose(inner, 0).centre - origin);
   // Steps of the golden ratio visit every phase of a vibration, whatever its period.
   const double horizon = std::min(inner.table->duration(inner.instance), 1000.0);
@@ -167,6 +227,10 @@ void MotionSet::save(StateWriter& out) const {
   out.put_text("motions/names", names);
   out.put("motions/started", started.data(), started.size());
   out.put("motions/start", start.data(), start.size(), "s");
+  for (std::size_t k = 0; k < motions_.size(); ++k)
+    if (motions_[k].servo)
+      save_plugin_state(*motions_[k].state, motions_[k].instance, out, "motions/state/" + std::to_string(k),
+                        "motion \"" + motions_[k].name + "\"");
 }
 
 void MotionSet::load(const StateReader& in) {
@@ -182,6 +246,9 @@ void MotionSet::load(const StateReader& in) {
   for (std::size_t k = 0; k < motions_.size(); ++k) {
     motions_[k].started = started[k] != 0;
     motions_[k].start = start[k];
+    if (motions_[k].servo)
+      load_plugin_state(*motions_[k].state, motions_[k].servo_instance, in, "motions/state/" + std::to_string(k),
+                        "motion \"" + motions_[k].name + "\"");
   }
 }
 

@@ -90,6 +90,8 @@ class PluginRegistry {
                                  const std::string& pointer, const std::vector<double>& values,
                                  const std::string& json = "{}");
 
+  /// Kind of the usable plugin of that id; empty: none. Reads manifests only.
+  std::string kind_of(const std::string& id) const;
   const std::vector<PluginManifest>& manifests() const;
   /// Of every id loaded, sorted by id.
   std::vector<PluginProvenance> provenance() const;

@@ -45,7 +45,9 @@ struct PluginRegistry::Impl {
         return m;
       }
       if (m.id == id && !refused) refused = &m;
-      if (m.refused.empty() && m.kind == kind) known.push_back(m.id);
+      // A servo may stand where a motion does.
+      const bool fits = m.kind == kind || (kind == CALX_MOTION && m.kind == CALX_SERVO);
+      if (m.refused.empty() && fits) known.push_back(m.id);
     }
     if (refused) throw Refused{refused->refused};
     const std::string near = nearest_name(id, known);
@@ -145,13 +147,19 @@ InstancePtr PluginRegistry::create_with_values(const std::string& id, const std:
     }
     auto instance = std::make_shared<PluginInstance>(from.library, made, &d);
     std::string fault = interface_fault(kind, instance->table(kind.c_str()));
-    const void* state = instance->table(CALX_STATE);  // optional
-    if (fault.empty() && state) fault = interface_fault(CALX_STATE, state);
+    const void* state = instance->table(CALX_STATE);  // optional, but for servos
+    if (fault.empty() && (state || kind == CALX_SERVO)) fault = interface_fault(CALX_STATE, state);
     if (!fault.empty()) throw Refused{from.library->path() + ": " + fault};
     return instance;
   } catch (const Refused& refused) {
     throw Impl::refusal(id, where, refused);
   }
+}
+
+std::string PluginRegistry::kind_of(const std::string& id) const {
+  for (const PluginManifest& m : impl_->manifests)
+    if (m.id == id && m.refused.empty()) return m.kind;
+  return "";
 }
 
 const std::vector<PluginManifest>& PluginRegistry::manifests() const { return impl_->manifests; }

@@ -106,6 +106,13 @@ std::string motion_fault(const calx_motion& motion) {
   return motion.top_speed ? "" : lacks(CALX_MOTION, "top_speed");
 }
 
+std::string servo_fault(const calx_servo& servo) {
+  if (!servo.pose) return lacks(CALX_SERVO, "pose");
+  if (!servo.advance) return lacks(CALX_SERVO, "advance");
+  if (!servo.top_speed) return lacks(CALX_SERVO, "top_speed");
+  return servo.reach ? "" : lacks(CALX_SERVO, "reach");
+}
+
 std::string state_fault(const calx_state& state) {
   if (!state.save) return lacks(CALX_STATE, "save");
   return state.load ? "" : lacks(CALX_STATE, "load");
@@ -114,8 +121,8 @@ std::string state_fault(const calx_state& state) {
 }  // namespace
 
 const std::vector<std::string>& known_kinds() {
-  static const std::vector<std::string> kinds = {CALX_CONTACT_LAW, CALX_GEOMETRY, CALX_MOTION, CALX_PARTICLE_FORCE,
-                                                 CALX_SENSOR};
+  static const std::vector<std::string> kinds = {CALX_CONTACT_LAW,    CALX_GEOMETRY, CALX_MOTION,
+                                                 CALX_PARTICLE_FORCE, CALX_SENSOR,   CALX_SERVO};
   return kinds;
 }
 
@@ -163,9 +170,13 @@ std::string interface_fault(const std::string& kind, const void* table) {
   const struct {
     const char* id;
     std::size_t size;
-  } sizes[] = {{CALX_CONTACT_LAW, sizeof(calx_contact_law)}, {CALX_GEOMETRY, sizeof(calx_geometry)},
-               {CALX_MOTION, sizeof(calx_motion)},           {CALX_PARTICLE_FORCE, sizeof(calx_particle_force)},
-               {CALX_SENSOR, sizeof(calx_sensor)},           {CALX_STATE, sizeof(calx_state)}};
+  } sizes[] = {{CALX_CONTACT_LAW, sizeof(calx_contact_law)},
+               {CALX_GEOMETRY, sizeof(calx_geometry)},
+               {CALX_MOTION, sizeof(calx_motion)},
+               {CALX_PARTICLE_FORCE, sizeof(calx_particle_force)},
+               {CALX_SENSOR, sizeof(calx_sensor)},
+               {CALX_SERVO, sizeof(calx_servo)},
+               {CALX_STATE, sizeof(calx_state)}};
   const auto known = std::find_if(std::begin(sizes), std::end(sizes), [&](const auto& s) { return kind == s.id; });
   if (known == std::end(sizes)) return "this host does not know the kind " + kind;
   if (head.draft != CALX_ABI_DRAFT)
@@ -181,6 +192,7 @@ std::string interface_fault(const std::string& kind, const void* table) {
   if (kind == CALX_PARTICLE_FORCE)
     return static_cast<const calx_particle_force*>(table)->eval ? "" : lacks(CALX_PARTICLE_FORCE, "eval");
   if (kind == CALX_SENSOR) return sensor_fault(*static_cast<const calx_sensor*>(table));
+  if (kind == CALX_SERVO) return servo_fault(*static_cast<const calx_servo*>(table));
   return state_fault(*static_cast<const calx_state*>(table));
 }
 

@@ -10,6 +10,7 @@ const std::size_t most_rows = 1500;
 void write_axis(JsonText& out, const std::string& name, const ChartAxis& axis) {
   out.key(name).begin_object().member("title", axis.title).member("unit", axis.unit);
   if (axis.from_zero) out.member("zero", true);
+  if (axis.logarithmic) out.member("log", true);
   if (!axis.categories.empty()) {
     out.key("categories").begin_array();
     for (const std::string& c : axis.categories) out.value(c);

@@ -12,6 +12,7 @@ struct ChartAxis {
   std::string title, unit;  // shown as "mass, kg"
   bool from_zero = false;
   std::vector<std::string> categories;  // names for x = 0, 1, 2, ...; empty: numbers
+  bool logarithmic = false;             // x only; all values must be above 0
 };
 
 struct ChartSeries {

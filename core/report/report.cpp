@@ -13,6 +13,7 @@ std::string write_report(const std::string& dir) {
   sections.overview();
   sections.pictures();
   sections.flow();
+  sections.lab();
   sections.dosing();
   sections.pile();
   sections.ledgers();

@@ -18,6 +18,7 @@ struct Sections {
   void header();
   void overview();       // checks, assumptions, deviations, what is missing
   void pictures();       // stills, section, playback
+  void lab();            // compression, tapping, wall and yield loci, flow function: what a powder laboratory draws
   void dosing();         // mass against time and cycle, flow
   void flow();           // lab plots of discharge, piles and drums
   void pile();           // height maps, other profiles, angle of repose against time

@@ -54,15 +54,21 @@ void build_shapes(World& w) {
 
 void build_motions(World& w) {
   for (const auto& m : w.c.motions) {
-    InstancePtr instance = w.registry->create(m.plugin, CALX_MOTION, m.parameters, w.c.file);
+    const bool servo = w.registry->kind_of(m.plugin) == CALX_SERVO;
+    InstancePtr instance = w.registry->create(m.plugin, servo ? CALX_SERVO : CALX_MOTION, m.parameters, w.c.file);
     int carrier = -1;
     for (std::size_t k = 0; k < w.c.motions.size(); ++k)
       if (w.c.motions[k].name == m.carried_by) carrier = static_cast<int>(k);
-    const auto& table = *static_cast<const calx_motion*>(instance->table(CALX_MOTION));
     bool waits = !m.start.empty();
     for (const auto& stage : w.c.stages)
       waits |= std::find(stage.start.begin(), stage.start.end(), m.name) != stage.start.end();
-    w.motions.add(m.name, &table, instance->get(), waits, carrier);
+    if (servo)
+      w.motions.add_servo(m.name, static_cast<const calx_servo*>(instance->table(CALX_SERVO)),
+                          static_cast<const calx_state*>(instance->table(CALX_STATE)), instance->get(),
+                          instance->host(), waits, carrier);
+    else
+      w.motions.add(m.name, static_cast<const calx_motion*>(instance->table(CALX_MOTION)), instance->get(), waits,
+                    carrier);
     w.motion_instances.push_back(std::move(instance));
   }
 }
@@ -296,6 +302,7 @@ std::uint64_t Simulation::step(std::uint64_t most) {
   } else {
     w.engine.begin(w.dt);
     const double at = w.contact_time(w.steps);
+    w.advance_servos(at);
     w.place_parts(at);
     report = w.engine.finish(at, w.dt);
   }
@@ -355,6 +362,13 @@ void Simulation::save(StateWriter& out) const {
   std::vector<std::uint8_t> present;
   for (const auto& part : w.engine.parts) present.push_back(part.present);
   out.put("parts/present", present.data(), present.size());
+  if (w.motions.has_servo()) {
+    w.engine.fetch_loads();
+    std::vector<double> load;
+    for (const auto& part : w.engine.parts)
+      for (const Vec3& v : {part.force, part.torque, part.pose.centre}) load.insert(load.end(), {v.x, v.y, v.z});
+    out.put("parts/load", load.data(), load.size(), "N,N,N,N m,N m,N m,m,m,m");
+  }
   w.engine.save(out);
   w.motions.save(out);
   w.events.save(out);
@@ -390,6 +404,18 @@ void Simulation::load(const StateReader& in) {
   w.motions.load(in);
   w.events.load(in);
   w.place_parts(w.now);
+  // Of the last contacts: the next step of a servo depends on them.
+  if (w.motions.has_servo()) {
+    const auto load = in.get_doubles("parts/load");
+    for (std::size_t k = 0; k < w.engine.parts.size(); ++k) {
+      const auto vector = [&](std::size_t at) {
+        return Vec3{load.at(9 * k + at), load.at(9 * k + at + 1), load.at(9 * k + at + 2)};
+      };
+      w.engine.parts[k].force = vector(0);
+      w.engine.parts[k].torque = vector(3);
+      w.engine.parts[k].pose.centre = vector(6);
+    }
+  }
   w.engine.load(in);
   for (std::size_t k = 0; k < w.sources.size(); ++k) w.sources[k].load(in, "sources/" + std::to_string(k));
   for (auto& s : w.sensors) s->load(in, "sensors/" + s->name());

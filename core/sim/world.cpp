@@ -229,6 +229,7 @@ void World::place_parts(double t) {
 StepTable World::steps_alone(std::uint64_t most) {
   for (const auto& s : sensors)
     if (s->wants_every_step()) most = 1;
+  if (motions.has_servo()) most = 1;
   const auto cycles = [this](const std::string& motion, double t) { return cycles_at(motion, t); };
   StepTable table;
   const double last_step = c.time.end - 0.5 * dt;
@@ -239,11 +240,27 @@ StepTable World::steps_alone(std::uint64_t most) {
       if (std::any_of(sources.begin(), sources.end(), [t](const Source& s) { return s.due(t); })) break;
     }
     const double at = contact_time(steps + k);
+    advance_servos(at);
     place_parts(at);
     table.time.push_back(at);
     for (const EnginePart& part : engine.parts) table.poses.push_back(part.pose);
   }
   return table;
+}
+
+void World::advance_servos(double t) {
+  if (!motions.has_servo()) return;
+  engine.fetch_loads();
+  moved_loads.clear();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const EnginePart& part = engine.parts[k];
+    if (walls[k].motion >= 0 && part.present)
+      moved_loads.push_back({walls[k].motion, part.pose.centre, part.force, part.torque});
+  }
+  const auto [failed, status] = motions.advance(t, dt, moved_loads);
+  if (failed < 0) return;
+  const auto k = static_cast<std::size_t>(failed);
+  motion_instances[k]->check(status, c.file, c.motions[k].pointer, "advance");
 }
 
 void World::set_present(const std::string& part, bool present, double) {

@@ -44,6 +44,7 @@ struct World final : WorldView, EventView {
   std::vector<std::string> messages;
   double dt = 0, now = 0;
   std::uint64_t steps = 0;
+  std::vector<MovedLoad> moved_loads;  // for servos; kept so that a step allocates nothing
   std::size_t stage = 0;
   bool ended = false;
   MassLedger ledger;
@@ -53,6 +54,8 @@ struct World final : WorldView, EventView {
   std::uint32_t part_number(const std::string& name) const;  // 0xFFFFFFFF: none
   const RegionSettings* region(const std::string& name) const;
   void place_parts(double t);
+  /// Takes servos to time t with the loads of the last contacts. Throws what PluginInstance::check throws.
+  void advance_servos(double t);
   void set_present(const std::string& part, bool present, double t);
   void handle_events(double t);
   void start_stage(std::size_t number, double t);

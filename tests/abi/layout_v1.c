@@ -71,3 +71,16 @@ AT(calx_contact_law, symbol, 104);
 AT(calx_contact_law, source_sha256, 128);
 AT(calx_contact_law, eval_f32, 136);
 AT(calx_contact_law, eval_f64, 144);
+
+SIZE(calx_servo_view, 72);
+AT(calx_servo_view, time, 8);
+AT(calx_servo_view, dt, 16);
+AT(calx_servo_view, force, 24);
+AT(calx_servo_view, torque, 48);
+
+SIZE(calx_servo, 40);
+AT(calx_servo, draft, 4);
+AT(calx_servo, pose, 8);
+AT(calx_servo, advance, 16);
+AT(calx_servo, top_speed, 24);
+AT(calx_servo, reach, 32);

@@ -129,7 +129,7 @@ TEST_CASE("what this host cannot run is refused before anything is loaded") {
   CHECK(refusal(changed("calx.particle-force/1", "calx.weather/1")) ==
         "of the kind calx.weather/1, which this host does not know; it knows \"calx.contact-law/1\", "
         "\"calx.geometry/1\", "
-        "\"calx.motion/1\", \"calx.particle-force/1\", \"calx.sensor/1\"");
+        "\"calx.motion/1\", \"calx.particle-force/1\", \"calx.sensor/1\", \"calx.servo/1\"");
   CHECK(refusal(changed("}]", "}], \"requires\": [\"calx.host.log/1\", \"calx.host.query/1\"]")) ==
         "needs the host extension calx.host.query/1, which this host lacks; it has \"calx.host.log/1\"");
   CHECK(refusal(changed("\"x.so\"", "{\"linux-riscv99\": \"x.so\"}")).find("; it has \"linux-riscv99\"") !=

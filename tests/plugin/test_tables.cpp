@@ -141,5 +141,9 @@ TEST_CASE("faults of the other kinds") {
   state.struct_size = sizeof state;
   state.draft = CALX_ABI_DRAFT;
   CHECK(interface_fault(CALX_STATE, &state) == "its table calx.state/1 lacks save");
+  calx_servo servo{};
+  servo.struct_size = sizeof servo;
+  servo.draft = CALX_ABI_DRAFT;
+  CHECK(interface_fault(CALX_SERVO, &servo) == "its table calx.servo/1 lacks pose");
   CHECK(interface_fault(CALX_MOTION, nullptr) == "it has no table calx.motion/1");
 }

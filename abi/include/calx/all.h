@@ -9,5 +9,6 @@
 #include "motion.h"
 #include "particle_force.h"
 #include "sensor.h"
+#include "servo.h"
 #include "state.h"
 #endif

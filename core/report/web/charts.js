@@ -93,7 +93,7 @@
     if (spec.series.some(function (s) { return s.style === "points"; })) {
       // Room for whole dots at the ends.
       var room = 0.025 * (xs[1] - xs[0]);
-      xs = [xs[0] === 0 ? 0 : xs[0] - room, xs[1] + room];
+      xs = spec.x.log ? [xs[0] * 0.9, xs[1] * 1.1] : [xs[0] === 0 ? 0 : xs[0] - room, xs[1] + room];
     }
     if (spec.x.categories) xs = [-0.5, spec.x.categories.length - 0.5];
     return { x: xs, y: ys };
@@ -102,7 +102,14 @@
   function axes(f, spec, x, y, bare) {
     var xTicks = Math.max(3, Math.min(12, Math.round(f.w / 75))), yTicks = Math.max(2, Math.min(8, Math.round(f.h / 42)));
     var xAxis = d3.svg.axis().scale(x).orient("bottom").ticks(xTicks).tickSize(bare ? 4 : -f.h, 0).tickPadding(7).tickFormat(tickText(x, xTicks));
-    if (spec.x.categories) {
+    if (spec.x.log) {
+      // 1, 2 and 5 of each decade.
+      var low = x.domain()[0], high = x.domain()[1], at = [];
+      for (var e = Math.floor(Math.log(low) / Math.LN10); Math.pow(10, e) <= high; ++e) {
+        [1, 2, 5].forEach(function (m) { var v = +(m * Math.pow(10, e)).toPrecision(3); if (v >= low && v <= high) at.push(v); });
+      }
+      xAxis.tickValues(at).tickFormat(number);
+    } else if (spec.x.categories) {
       xAxis.tickValues(d3.range(spec.x.categories.length)).tickFormat(function (v) { return spec.x.categories[v]; });
     } else if (spec.kind === "xy" && spec.x.title === "cycle") {
       xAxis.tickValues(x.ticks(xTicks).filter(function (v) { return v % 1 === 0; })).tickFormat(d3.format("d"));
@@ -211,7 +218,7 @@
     var range = extents(spec, layers), rows = (spec.marks || []).length;
     var margin = { left: 62, right: 14, top: rows > 0 ? 46 : 12, bottom: 48 };
     var height = width > 700 ? 380 : 300;
-    var x = d3.scale.linear().domain(range.x), y = d3.scale.linear().domain(range.y);
+    var x = (spec.x.log ? d3.scale.log() : d3.scale.linear()).domain(range.x), y = d3.scale.linear().domain(range.y);
     if (spec.equal) {
       var per = (width - margin.left - margin.right) / (range.x[1] - range.x[0]), high = per * (range.y[1] - range.y[0]) * 1.08;
       if (high > 420) { per *= 420 / high; high = 420; }

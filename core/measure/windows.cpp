@@ -1,0 +1,79 @@
+#include "measure/windows.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace calx {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+StressState scaled(const StressState& s, double factor) {
+  return {s.normal * factor, s.shear * factor, s.height * factor, s.speed * factor};
+}
+
+double change(double from, double to) { return to != 0 ? std::fabs(to - from) / std::fabs(to) : nan; }
+
+}  // namespace
+
+void Windows::begin() {
+  sum_ = last_ = before_ = peak_ = StressState();
+  steps_ = time_ = count_ = 0;
+  haste_ = nan;
+}
+
+void Windows::add(const StressState& now, double dt) {
+  sum_.normal += now.normal;
+  sum_.shear += now.shear;
+  sum_.height += now.height;
+  sum_.speed += now.speed;
+  steps_ += 1;
+  time_ += dt;
+  if (time_ >= length_ - 0.5 * dt) close();
+}
+
+void Windows::close() {
+  before_ = last_;
+  last_ = scaled(sum_, 1 / steps_);
+  if (count_ == 0 || last_.shear > peak_.shear) peak_ = last_;
+  if (last_.normal > 0) {
+    const double haste = last_.speed / std::sqrt(last_.normal);
+    if (!(haste <= haste_)) haste_ = haste;  // the first one replaces NaN
+  }
+  count_ += 1;
+  sum_ = StressState();
+  steps_ = time_ = 0;
+}
+
+StressState Windows::last() const { return count_ > 0 ? last_ : scaled(sum_, steps_ > 0 ? 1 / steps_ : 0); }
+double Windows::shear_drift() const { return count_ > 1 ? change(before_.shear, last_.shear) : nan; }
+double Windows::height_drift() const { return count_ > 1 ? change(before_.height, last_.height) : nan; }
+
+std::vector<double> Windows::numbers() const {
+  std::vector<double> out{haste_, steps_, time_, count_};
+  for (const StressState& s : {sum_, last_, before_, peak_})
+    out.insert(out.end(), {s.normal, s.shear, s.height, s.speed});
+  return out;
+}
+
+void Windows::set_numbers(const std::vector<double>& n) {
+  haste_ = n.at(0);
+  steps_ = n.at(1);
+  time_ = n.at(2);
+  count_ = n.at(3);
+  std::size_t at = 4;
+  for (StressState* s : {&sum_, &last_, &before_, &peak_}) {
+    *s = {n.at(at), n.at(at + 1), n.at(at + 2), n.at(at + 3)};
+    at += 4;
+  }
+}
+
+bool StepCount::ended(const WorldView& world) {
+  // A motion's cycle is computed from the time, so the last bits of a whole number may be missing.
+  const double done = std::floor(world.cycles_of(motion_) + 1e-9);
+  if (done <= done_) return false;
+  done_ = done;
+  return true;
+}
+
+}  // namespace calx

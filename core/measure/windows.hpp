@@ -1,0 +1,63 @@
+// windows.hpp: means over stretches of equal length of one step of a test, to tell a steady value from a peak and from
+// what still changes. Private to measure/.
+#pragma once
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "measure/world.hpp"
+
+namespace calx {
+
+/// A stress in a cell, or on a wall, and how fast it is sheared or squeezed.
+struct StressState {
+  double normal = 0, shear = 0;  // Pa; normal is positive in compression
+  double height = 0;             // m; 0 where nobody asks
+  double speed = 0;              // m/s, not negative
+};
+
+/// Consecutive windows of a step; the last one that is cut short by the end of the step is left out.
+class Windows {
+ public:
+  explicit Windows(double length) : length_(length) { begin(); }
+  /// Begins a step; forgets the one before.
+  void begin();
+  /// After a time step of dt, s.
+  void add(const StressState& now, double dt);
+  /// Mean over the last window of the step, or over the whole step where it holds none.
+  StressState last() const;
+  /// The window with the largest shear; last() where the step holds none.
+  StressState peak() const { return count_ > 0 ? peak_ : last(); }
+  /// Relative change from the last window but one to the last, of shear, and of height; NaN with fewer than two.
+  double shear_drift() const;
+  double height_drift() const;
+  /// Largest speed / sqrt(normal) of the windows, m/s / sqrt(Pa), those without compression left out: what inertial
+  /// numbers grow with. NaN without any.
+  double haste() const { return haste_; }
+
+  std::vector<double> numbers() const;
+  void set_numbers(const std::vector<double>& numbers);
+
+ private:
+  void close();
+  double length_;
+  StressState sum_, last_, before_, peak_;
+  double haste_ = 0, steps_ = 0, time_ = 0, count_ = 0;
+};
+
+/// Counts the completed steps of a motion.
+class StepCount {
+ public:
+  explicit StepCount(std::string motion) : motion_(std::move(motion)) {}
+  /// True when a step has ended since the last call.
+  bool ended(const WorldView& world);
+  double done() const { return done_; }
+  void set_done(double done) { done_ = done; }
+
+ private:
+  std::string motion_;
+  double done_ = 0;
+};
+
+}  // namespace calx
