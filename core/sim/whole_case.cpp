@@ -1,11 +1,13 @@
 #include "sim/whole_case.hpp"
 
 #include "base/error.hpp"
+#include "plugin/effects.hpp"
 
 namespace calx {
 
 CaseFile read_whole_case(const RunOptions& options) {
-  CaseFile file = read_case(options.case_path, options.overrides);
+  const PluginEffects effects(plugin_search_path(options.simulation.plugin_path));
+  CaseFile file = read_case(options.case_path, options.overrides, &effects);
   const CaseSettings& c = file.settings;
   const auto need = [&](const std::string& a, const std::string& b, const std::string& who) {
     for (const auto& contact : c.contacts)
