@@ -5,6 +5,8 @@
 # and machine code cannot drift apart. Flags make laws vectorise without changing any value; -ffast-math is refused
 # because it would flush denormals in the host.
 #
+# calx_add_effect(NAME MANIFEST x.plugin.json.in [NO_INSTALL]) does the same for an effect that is a manifest alone.
+#
 # Also defines Calx::abi, the headers. Works inside Calx, included from its source tree, or through
 # find_package(CalxAbi).
 if(NOT TARGET Calx::abi)
@@ -71,6 +73,23 @@ function(calx_add_plugin name)
   configure_file(${A_MANIFEST} ${CALX_PLUGIN_DIR}/${name}.plugin.json @ONLY)
   if(NOT A_NO_INSTALL)
     install(TARGETS ${name} LIBRARY DESTINATION lib/calx/plugins)
+    install(FILES ${CALX_PLUGIN_DIR}/${name}.plugin.json DESTINATION lib/calx/plugins)
+  endif()
+endfunction()
+
+# calx_add_effect(NAME MANIFEST x.plugin.json.in [NO_INSTALL]): an effect of edits alone, a manifest without a library, of
+# the kind calx.case-effect/1.
+function(calx_add_effect name)
+  cmake_parse_arguments(A "NO_INSTALL" "MANIFEST" "" ${ARGN})
+  if(NOT A_MANIFEST OR A_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "${name}: calx_add_effect needs MANIFEST (unknown: \"${A_UNPARSED_ARGUMENTS}\")")
+  endif()
+  if(NOT CALX_PLUGIN_DIR)
+    set(CALX_PLUGIN_DIR ${CMAKE_BINARY_DIR}/plugins)
+  endif()
+  add_custom_target(${name})
+  configure_file(${A_MANIFEST} ${CALX_PLUGIN_DIR}/${name}.plugin.json @ONLY)
+  if(NOT A_NO_INSTALL)
     install(FILES ${CALX_PLUGIN_DIR}/${name}.plugin.json DESTINATION lib/calx/plugins)
   endif()
 endfunction()

@@ -92,6 +92,20 @@ void CaseReader::read_forces(Object& root) {
   }
 }
 
+void CaseReader::read_instruments(const Node& sensor, SensorSettings& s) {
+  Object all(sensor, "a sensor");
+  for (const Node& node : all.items("instruments", "instruments")) {
+    Object object(node, "an instrument");
+    InstrumentSettings i;
+    i.pointer = node.pointer();
+    i.plugin = object.need("plugin", "the id of an instrument").text("the id of an instrument");
+    i.column = object.text("column", "the name of a column");
+    i.parameters = object.parameters();
+    object.done();
+    s.instruments.push_back(i);
+  }
+}
+
 // Which other keys a sensor has is known by its kind, so they are kept as they are.
 void CaseReader::read_sensors(Object& root) {
   for (const Node& node : root.items("sensors", "sensors")) {
@@ -110,12 +124,11 @@ void CaseReader::read_sensors(Object& root) {
                  : object.need("kind", "the kind of sensor, such as \"mass\", or \"plugin\"").text("a kind of sensor");
     s.every = object.need("every", "the simulated time between samples in s").number("s", Allow::above_zero);
     s.parameters = node.parameters();
-    if (const auto region = object.find("region")) {
-      const std::string region_is = region_name(*region, "sensor " + s.name);
-      Json replaced = node.json();
-      replaced["region"] = region_is;
-      s.parameters.json = replaced.dump();
-    }
+    Json own = node.json();
+    if (const auto region = object.find("region")) own["region"] = region_name(*region, "sensor " + s.name);
+    own.erase("instruments");
+    s.parameters.json = own.dump();
+    read_instruments(node, s);
     if (s.kind == "energy") case_.energy_ledger = true;
     case_.sensors.push_back(s);
   }

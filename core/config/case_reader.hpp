@@ -14,6 +14,8 @@ class CaseReader {
  public:
   explicit CaseReader(Document& document) : document_(document) {}
   CaseSettings read();
+  /// A region under "regions", for what looks at a case before it is read.
+  static RegionSettings named_region(Document& document, const std::string& name);
 
  private:
   /// Names that other sections may refer to, collected before any section is read.
@@ -37,6 +39,7 @@ class CaseReader {
   void read_stages(Object& root);
   void read_forces(Object& root);
   void read_sensors(Object& root);
+  void read_instruments(const Node& sensor, SensorSettings& s);
 
   // case_events.cpp
   void read_events(Object& root);
@@ -57,6 +60,7 @@ class CaseReader {
   void read_output(Object& root);
   void read_rest(Object& root);
   void read_plugins(Object& root);
+  void read_effects(Object& root);
 
   // case_scale.cpp
   void read_scale(Object& root);

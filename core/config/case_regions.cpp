@@ -123,6 +123,15 @@ RegionSettings CaseReader::region(const Node& node, const std::string& name) {
   return r;
 }
 
+RegionSettings CaseReader::named_region(Document& document, const std::string& name) {
+  CaseReader reader(document);
+  const Node root(document, document.root(), "");
+  reader.collect_names(root);
+  Object object(root, "a case");
+  Object regions = object.section("regions", "regions by name");
+  return reader.region(regions.need(name, "must be a region"), name);
+}
+
 std::string CaseReader::region_name(const Node& node, const std::string& made_up) {
   if (!node.json().is_object()) return node.name_of("region", names_.regions);
   RegionSettings r = region(node, made_up);

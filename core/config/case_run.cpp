@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "config/case_effects.hpp"
 #include "config/case_reader.hpp"
 #include "config/config.hpp"
 
@@ -106,6 +107,21 @@ void CaseReader::read_plugins(Object& root) {
   }
 }
 
+// Expanded before the case is read (case_effects.hpp); what stands here is the record.
+void CaseReader::read_effects(Object& root) {
+  for (const Node& node : root.items("effects", "effects")) {
+    Object o(node, "an effect");
+    EffectSettings e;
+    e.effect = o.need("effect", "the id of an effect").text("the id of an effect");
+    e.version = o.text("version", "a version");
+    e.on = o.parameters("on").json;
+    e.parameters = o.parameters("parameters").json;
+    o.has("expanded");
+    o.done();
+    case_.effects.push_back(e);
+  }
+}
+
 CaseSettings CaseReader::read() {
   const Node top(document_, document_.root(), "");
   Object root(top, "a case");
@@ -147,6 +163,7 @@ CaseSettings CaseReader::read() {
   case_.overlap_limit = root.number("overlap_limit", "1", case_.overlap_limit, Allow::above_zero);
   for (const Node& n : root.items("assumptions", "texts"))
     case_.assumptions.push_back(n.text("one assumption in words"));
+  read_effects(root);
   read_plugins(root);
   read_scale(root);
   root.done();
@@ -155,16 +172,18 @@ CaseSettings CaseReader::read() {
 }
 
 CaseFile parse_case(const std::string& text, const std::string& file,
-                    const std::vector<std::pair<std::string, std::string>>& overrides) {
+                    const std::vector<std::pair<std::string, std::string>>& overrides, const EffectLibrary* effects) {
   Document document(text, file, overrides);
+  expand_effects(document, effects);
   CaseFile out;
   out.settings = CaseReader(document).read();
   out.resolved = document.resolved();
   return out;
 }
 
-CaseFile read_case(const std::string& path, const std::vector<std::pair<std::string, std::string>>& overrides) {
-  return parse_case(read_text_file(path), path, overrides);
+CaseFile read_case(const std::string& path, const std::vector<std::pair<std::string, std::string>>& overrides,
+                   const EffectLibrary* effects) {
+  return parse_case(read_text_file(path), path, overrides, effects);
 }
 
 }  // namespace calx

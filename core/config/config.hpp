@@ -6,24 +6,29 @@
 #include <vector>
 
 #include "calx/abi.h"
+#include "config/effects.hpp"
 #include "config/settings.hpp"
 
 namespace calx {
 
 struct CaseFile {
   CaseSettings settings;
-  std::string resolved;  // the case as resolved: extends merged, overrides applied, comments gone; running it again
-                         // gives the same bits (written as case.json of the run's folder)
+  std::string resolved;  // the case as resolved: extends merged, overrides applied, effects expanded, comments gone;
+                         // running it again gives the same bits (written as case.json of the run's folder)
 };
 
 /// Reads, merges "extends" (RFC 7396), applies overrides ("/time/end", "2.0": a JSON value, or text where it does not
 /// parse) and validates all that needs no plugin: keys, types, units, ranges, names that refer to each other.
+/// effects: where "effects" of the case are looked up (PluginEffects of core/plugin); without it a case that names one
+/// is refused, unless it is a resolved one, whose effects are expanded already.
 /// Throws Error(Fault::settings) or Error(Fault::files).
-CaseFile read_case(const std::string& path, const std::vector<std::pair<std::string, std::string>>& overrides = {});
+CaseFile read_case(const std::string& path, const std::vector<std::pair<std::string, std::string>>& overrides = {},
+                   const EffectLibrary* effects = nullptr);
 
 /// The same from text; file is used in messages and to resolve relative paths.
 CaseFile parse_case(const std::string& text, const std::string& file,
-                    const std::vector<std::pair<std::string, std::string>>& overrides = {});
+                    const std::vector<std::pair<std::string, std::string>>& overrides = {},
+                    const EffectLibrary* effects = nullptr);
 
 /// The values of a parameter table in table order: presets filled in, units converted ("swing_deg" for a field in rad,
 /// {"value": 2.5, "unit": "mm"}, arrays of three for vector groups, names for choices), ranges checked.

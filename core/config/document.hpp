@@ -31,6 +31,8 @@ class Document {
   Document(const Parameters& parameters, const std::string& file);
 
   const Json& root() const { return root_; }
+  /// For what changes a case before it is read: effects.
+  Json& change() { return root_; }
   const std::string& file() const { return file_; }
   /// Absolute folder where relative paths start.
   const std::string& folder() const { return folder_; }

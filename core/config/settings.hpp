@@ -129,10 +129,17 @@ struct ForceSettings {
   Parameters parameters;
 };
 
+/// A sensor plugin that reads another sensor's figure instead of the particles, as a slow load cell does.
+struct InstrumentSettings {
+  std::string plugin, column, pointer;  // column of the sensor it changes; empty: the first
+  Parameters parameters;
+};
+
 struct SensorSettings {
   std::string name, kind, pointer;  // kind: built-in name or a plugin id
   double every = 0;                 // s of simulated time between samples
-  Parameters parameters;            // the whole object, inline regions replaced by their made-up names
+  Parameters parameters;  // the whole object but for instruments, inline regions replaced by their made-up names
+  std::vector<InstrumentSettings> instruments;  // in the order in which the figures pass them
 };
 
 struct StageSettings {
@@ -179,6 +186,12 @@ struct ScaleSettings {
   enum class Cohesion { strength, bond } cohesion = Cohesion::strength;
 };
 
+/// Record of an effect that was put into the case (config/effects.hpp).
+struct EffectSettings {
+  std::string effect, version;
+  std::string on = "{}", parameters = "{}";  // JSON objects
+};
+
 struct CaseSettings {
   std::string file;    // path of the case, for messages
   std::string folder;  // absolute; relative paths of the case start here
@@ -205,6 +218,7 @@ struct CaseSettings {
   bool energy_ledger = false;  // "energy": true, or a sensor of kind "energy"
   double overlap_limit = 0.5;  // of the radius: beyond it the run stops as a blow-up or a particle gone through a wall
   std::vector<std::string> assumptions;
+  std::vector<EffectSettings> effects;
   std::vector<std::pair<std::string, std::string>> plugin_pins;  // id, sha256
 };
 

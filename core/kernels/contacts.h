@@ -37,6 +37,7 @@ KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT sph
   c.r_i = (real)a->r;
   c.r_j = (real)b->r;
   c.dt = (real)n.dt;
+  c.time = (real)n.time;
   const real arm_i = (real)(a->r - 0.5 * overlap), arm_j = (real)(b->r - 0.5 * overlap);
   const real wix = (real)a->wx, wiy = (real)a->wy, wiz = (real)a->wz;
   const real wjx = (real)b->wx, wjy = (real)b->wy, wjz = (real)b->wz;

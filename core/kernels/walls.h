@@ -113,6 +113,7 @@ KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
     c.r_i = a->r;
     c.r_j = 0.0;
     c.dt = n.dt;
+    c.time = n.time;
     calx_wrench_f64 w;
     if (!calx_contact_laws_f64(law_of[pair], &c, history + (slot0 + slot_of[k]), history_stride,
                                !(old >> slot_of[k] & 1u), law_numbers, &w)) {

@@ -6,6 +6,7 @@
 
 #include "base/state.hpp"
 #include "calx/sensor.h"
+#include "calx/state.h"
 #include "measure/world.hpp"
 
 namespace calx {
@@ -57,5 +58,19 @@ std::unique_ptr<Sensor> make_sensor(const SensorSettings& settings, const CaseSe
 /// A plugin's sensor; table and instance outlive it.
 std::unique_ptr<Sensor> make_plugin_sensor(const SensorSettings& settings, const calx_sensor* table,
                                            calx_instance* instance, const calx_host* host);
+
+/// One instrument of a sensor: a plugin that changes one of its columns. Tables and instance outlive it; state may be
+/// null.
+struct InstrumentPlugin {
+  const InstrumentSettings* settings = nullptr;
+  const calx_sensor* table = nullptr;
+  const calx_state* state = nullptr;
+  calx_instance* instance = nullptr;
+  const calx_host* host = nullptr;
+};
+/// The sensor as its instruments show it, in their order: same name, columns, fields and curves. Throws
+/// Error(Fault::settings) for a column the sensor lacks, Error(Fault::plugin) for a plugin that is no instrument.
+std::unique_ptr<Sensor> with_instruments(std::unique_ptr<Sensor> sensor, const std::vector<InstrumentPlugin>& plugins,
+                                         const std::string& file);
 
 }  // namespace calx

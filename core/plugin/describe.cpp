@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/nearest.hpp"
 #include "plugin/contact_law.hpp"
+#include "plugin/effects.hpp"
 #include "plugin/plugin.hpp"
 
 namespace calx {
@@ -104,6 +105,12 @@ std::string kind_of(const PluginRegistry& registry, const std::vector<std::strin
                                  did_you_mean(id, known));
 }
 
+const PluginManifest& usable(const PluginRegistry& registry, const std::string& id) {
+  const auto& all = registry.manifests();
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const PluginManifest& m) { return m.id == id && m.refused.empty(); });
+}
+
 /// A law made with presets, which always succeeds, to see the tables of its instance.
 ContactLaw preset_law(PluginRegistry& registry, const calx_descriptor& d) {
   std::vector<double> presets;
@@ -114,16 +121,16 @@ ContactLaw preset_law(PluginRegistry& registry, const calx_descriptor& d) {
 }  // namespace
 
 std::string plugin_list_text(const std::vector<std::string>& search) {
-  std::vector<Row> usable;
+  std::vector<Row> rows;
   std::string refused;
   for (const PluginManifest& m : discover_plugins(search)) {
     if (m.refused.empty())
-      usable.push_back({m.id, m.version, m.kind, m.summary});
+      rows.push_back({m.id, m.version, m.kind, std::string(m.effect ? "[effect] " : "") + m.summary});
     else
       refused += "  " + (m.id.empty() ? m.path : m.id) + ": " + m.refused + "\n";
   }
-  std::sort(usable.begin(), usable.end());
-  std::string out = usable.empty() ? "no plugin found\n" : "plugins\n" + table(usable);
+  std::sort(rows.begin(), rows.end());
+  std::string out = rows.empty() ? "no plugin found\n" : "plugins\n" + table(rows);
   if (!refused.empty()) out += "\nrefused\n" + refused;
   out += "\nfolders searched, in this order\n";
   for (const std::string& folder : search) out += "  " + folder + "\n";
@@ -133,6 +140,11 @@ std::string plugin_list_text(const std::vector<std::string>& search) {
 std::string plugin_describe_text(const std::string& id, const std::vector<std::string>& search) {
   PluginRegistry registry(search);
   const std::string kind = kind_of(registry, search, id);
+  const PluginManifest& manifest = usable(registry, id);
+  if (kind == kCaseEffect)
+    return id + " " + manifest.version + "\n" + manifest.summary + "\n\n" +
+           table({{"kind", kind}, {"license", manifest.license}, {"manifest", manifest.path}}) +
+           effect_text(*manifest.effect);
   const calx_descriptor& d = registry.load(id, kind, "", "");
   const PluginProvenance from = registry.provenance().at(0);
   std::string out = std::string(d.id) + " " + d.version + "\n" + d.summary + "\n\n";
@@ -156,12 +168,16 @@ std::string plugin_describe_text(const std::string& id, const std::vector<std::s
     if (law.is_active()) out += "active: may create energy on purpose\n";
   }
   if (d.extra_schema) out += std::string("\nfurther parameters, as JSON Schema\n  ") + d.extra_schema + "\n";
+  if (manifest.effect) out += effect_text(*manifest.effect);
   return out;
 }
 
 std::string plugin_schema_text(const std::string& id, const std::vector<std::string>& search) {
   PluginRegistry registry(search);
   const std::string kind = kind_of(registry, search, id);
+  if (kind == kCaseEffect)
+    throw Error(Fault::plugin,
+                "plugin " + id + " is an effect of edits alone; calx plugin describe shows its parameters");
   const calx_descriptor& d = registry.load(id, kind, "", "");
   const std::string title = std::string("parameters of ") + d.id + " " + d.version;
   if (kind != CALX_CONTACT_LAW) return table_schema({{d.parameter, d.parameter_count}}, d.extra_schema, title);

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/error.hpp"
 #include "base/nearest.hpp"
+#include "plugin/effects.hpp"
 #include "plugin/host.hpp"
 #include "plugin/refused.hpp"
 #include "plugin/tables.hpp"
@@ -21,7 +23,7 @@ using nlohmann::json;
 
 const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",      "version", "vendor",
                                                 "license",     "plugins", "requires", "sha256"};
-const std::vector<std::string> plugin_keys = {"id", "kind", "summary"};
+const std::vector<std::string> plugin_keys = {"id", "kind", "summary", "effect"};
 
 /// "linux-x86_64": the key of this machine's library where a manifest names several.
 std::string platform() {
@@ -59,6 +61,20 @@ void check_keys(const json& object, const std::vector<std::string>& known, const
     const std::string near = nearest_name(item.key(), known);
     throw Refused{where + "/" + item.key() + ": unknown key" +
                   (near.empty() ? "" : "; did you mean \"" + near + "\"?")};
+  }
+}
+
+std::shared_ptr<const EffectInfo> read_effect(const json& object, const PluginManifest& of, const std::string& where) {
+  try {
+    auto effect = std::make_shared<EffectInfo>(parse_effect(object.dump(), where));
+    effect->id = of.id;
+    effect->version = of.version;
+    effect->kind = of.kind;
+    effect->summary = of.summary;
+    effect->manifest = of.path;
+    return effect;
+  } catch (const Error& e) {
+    throw Refused{e.what()};
   }
 }
 
@@ -164,6 +180,7 @@ std::vector<PluginManifest> read_manifest(const std::string& path) {
     const json& plugins = member(root, "plugins", "");
     if (!plugins.is_array() || plugins.empty()) throw Refused{"/plugins: not a list of at least one plugin"};
     common.refused = fault;
+    bool all_edits = true;  // effects of edits alone need no library
     for (std::size_t k = 0; k < plugins.size(); ++k) {
       const std::string where = "/plugins/" + std::to_string(k);
       if (!plugins[k].is_object()) throw Refused{where + ": not an object"};
@@ -176,13 +193,18 @@ std::vector<PluginManifest> read_manifest(const std::string& path) {
         throw Refused{where + "/id: \"" + one.id + "\" is not an id such as \"org.example.wet-hertz\""};
       for (const PluginManifest& other : out)
         if (other.id == one.id) throw Refused{where + "/id: \"" + one.id + "\" stands twice in this manifest"};
+      if (plugins[k].count("effect")) one.effect = read_effect(plugins[k]["effect"], one, where + "/effect");
+      if (one.kind == kCaseEffect && !one.effect)
+        throw Refused{where + "/effect: is missing; the kind " + kCaseEffect + " is nothing else"};
+      if (one.kind != kCaseEffect) all_edits = false;
       const auto& kinds = known_kinds();
-      if (one.refused.empty() && std::find(kinds.begin(), kinds.end(), one.kind) == kinds.end())
+      if (one.refused.empty() && one.kind != kCaseEffect &&
+          std::find(kinds.begin(), kinds.end(), one.kind) == kinds.end())
         one.refused = "of the kind " + one.kind + ", which this host does not know; it knows " + quoted_list(kinds);
       out.push_back(std::move(one));
     }
     // Last, so that a case naming an id is told that its library is missing, not that the id is unknown.
-    if (fault.empty()) {
+    if (fault.empty() && !(all_edits && !root.count("library"))) {
       const std::string library = library_path(root, fs::path(path).parent_path());
       for (PluginManifest& one : out) one.library = library;
     }

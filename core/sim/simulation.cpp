@@ -189,13 +189,22 @@ void build_sensors(World& w) {
   for (const auto& s : w.c.sensors) {
     if (is_builtin_sensor(s.kind)) {
       w.sensors.push_back(make_sensor(s, w.c));
-      continue;
+    } else {
+      std::vector<std::string> ours{"name", "kind", "plugin", "every"};
+      InstancePtr instance = w.registry->create(s.kind, CALX_SENSOR, s.parameters, w.c.file, ours);
+      w.sensors.push_back(make_plugin_sensor(s, static_cast<const calx_sensor*>(instance->table(CALX_SENSOR)),
+                                             instance->get(), instance->host()));
+      w.sensor_instances.push_back(std::move(instance));
     }
-    std::vector<std::string> ours{"name", "kind", "plugin", "every"};
-    InstancePtr instance = w.registry->create(s.kind, CALX_SENSOR, s.parameters, w.c.file, ours);
-    w.sensors.push_back(make_plugin_sensor(s, static_cast<const calx_sensor*>(instance->table(CALX_SENSOR)),
-                                           instance->get(), instance->host()));
-    w.sensor_instances.push_back(std::move(instance));
+    std::vector<InstrumentPlugin> instruments;
+    for (const auto& i : s.instruments) {
+      InstancePtr instance = w.registry->create(i.plugin, CALX_SENSOR, i.parameters, w.c.file);
+      instruments.push_back({&i, static_cast<const calx_sensor*>(instance->table(CALX_SENSOR)),
+                             static_cast<const calx_state*>(instance->table(CALX_STATE)), instance->get(),
+                             instance->host()});
+      w.sensor_instances.push_back(std::move(instance));
+    }
+    if (!instruments.empty()) w.sensors.back() = with_instruments(std::move(w.sensors.back()), instruments, w.c.file);
   }
 }
 

@@ -114,11 +114,18 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
   Json plugins = Json::array();
   for (const auto& p : s.provenance())
     plugins.push_back({{"id", p.id}, {"version", p.version}, {"sha256", p.sha256}, {"path", p.path}});
+  Json effects = Json::array();
+  for (const auto& e : c.effects)
+    effects.push_back({{"effect", e.effect},
+                       {"version", e.version},
+                       {"on", Json::parse(e.on)},
+                       {"parameters", Json::parse(e.parameters)}});
   j["provenance"] = {{"calx", version()},
                      {"git", git_revision()},
                      {"abi", std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + " draft " +
                                  std::to_string(CALX_ABI_DRAFT)},
                      {"plugins", plugins},
+                     {"effects", effects},
                      {"case_sha256", facts.case_sha256},
                      {"case_file", c.file},
                      {"started", facts.started},

@@ -1,11 +1,13 @@
 #include "sim/whole_case.hpp"
 
 #include "base/error.hpp"
+#include "plugin/effects.hpp"
 
 namespace calx {
 
 CaseFile read_whole_case(const RunOptions& options) {
-  return whole_case(read_case(options.case_path, options.overrides));
+  const PluginEffects effects(plugin_search_path(options.simulation.plugin_path));
+  return whole_case(read_case(options.case_path, options.overrides, &effects));
 }
 
 CaseFile whole_case(CaseFile file) {

@@ -205,7 +205,8 @@ std::string material_json(const Study& study, const Calibration& c) {
   std::vector<double> mean;
   for (const Posterior& p : c.parameters) mean.push_back(p.mean);
   const StudyCase& from = main_case(study);
-  const Json whole = Json::parse(resolve(request_for(study, from, mean, study.seed)).resolved);
+  const Json whole =
+      Json::parse(resolve(request_for(study, from, mean, study.seed), study.executor.plugin_path).resolved);
   std::set<std::string> sections{"materials", "contacts"};
   for (const StudyParameter& p : study.parameters)
     for (const std::string& pointer : p.set) sections.insert(pointer.substr(1, pointer.find('/', 1) - 1));

@@ -26,7 +26,7 @@ std::vector<Columns> build(const Study& study, const StudyCase& c, const std::ve
     options.threads = 1;
     options.device = "cpu";
     options.plugin_path = study.executor.plugin_path;
-    Simulation sim(resolve(request_for(study, c, values, study.seed, reduced)), options);
+    Simulation sim(resolve(request_for(study, c, values, study.seed, reduced), options.plugin_path), options);
     std::vector<Columns> out;
     for (const auto& s : sim.sensors()) out.push_back({s->name(), s->columns()});
     return out;

@@ -72,7 +72,7 @@ class CachedExecutor : public Executor {
     std::vector<std::string> pending;
     std::map<std::string, std::string> texts;
     for (const RunRequest& request : requests) {
-      const CaseFile file = resolve(request);
+      const CaseFile file = resolve(request, settings_.plugin_path);
       keys.push_back(cache_key(file, settings_.plugin_path));
       const std::string& key = keys.back();
       if (results.count(key) || texts.count(key)) continue;

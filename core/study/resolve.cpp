@@ -8,7 +8,7 @@
 #include "base/sha256.hpp"
 #include "base/version.hpp"
 #include "config/document.hpp"
-#include "plugin/plugin.hpp"
+#include "plugin/effects.hpp"
 
 namespace calx {
 namespace {
@@ -38,13 +38,16 @@ std::set<std::string> plugin_ids(const CaseSettings& c) {
   for (const auto& part : c.parts) out.insert(part.geometry);
   for (const auto& motion : c.motions) out.insert(motion.plugin);
   for (const auto& force : c.forces) out.insert(force.plugin);
-  for (const auto& sensor : c.sensors) out.insert(sensor.kind);
+  for (const auto& sensor : c.sensors) {
+    out.insert(sensor.kind);
+    for (const auto& instrument : sensor.instruments) out.insert(instrument.plugin);
+  }
   return out;
 }
 
 }  // namespace
 
-CaseFile resolve(const RunRequest& request) {
+CaseFile resolve(const RunRequest& request, const std::vector<std::string>& plugin_path) {
   Document document(read_text_file(request.case_path), request.case_path, {});
   Json root = document.root();
   for (std::size_t k = 0; k < request.patches.size(); ++k)
@@ -53,7 +56,8 @@ CaseFile resolve(const RunRequest& request) {
   overrides.emplace_back("/seed", std::to_string(request.seed));
   // Studies look at sensors only; frames and checkpoints of a hundred runs would fill a disk.
   overrides.emplace_back("/output", R"({"frames_every": 0, "checkpoint_every_wall": 0})");
-  return parse_case(root.dump(), request.case_path, overrides);
+  const PluginEffects effects(plugin_search_path(plugin_path));
+  return parse_case(root.dump(), request.case_path, overrides, &effects);
 }
 
 std::string cache_key(const CaseFile& file, const std::vector<std::string>& plugin_path) {

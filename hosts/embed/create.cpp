@@ -6,6 +6,7 @@
 
 #include "base/version.hpp"
 #include "io/io.hpp"
+#include "plugin/effects.hpp"
 #include "sim/whole_case.hpp"
 #include "simulation.hpp"
 
@@ -81,7 +82,8 @@ std::int32_t create(const char* function, const char* text, const calx_sim_optio
     needed(out, function, "out");
     const calx_sim_options o = known(options);
     auto sim = std::make_unique<calx_sim>();
-    sim->simulation = std::make_unique<Simulation>(whole_case(read(o)), simulation_options(o));
+    sim->simulation = std::make_unique<Simulation>(
+        whole_case(read(o, PluginEffects(plugin_search_path(plugin_folders(o.plugin_path))))), simulation_options(o));
     for (const auto& sensor : sim->simulation->sensors()) sim->columns.push_back(sensor->columns());
     *out = sim.release();
   });
@@ -106,16 +108,18 @@ const char* calx_sim_error(void) { return last_error().c_str(); }
 const char* calx_sim_version(void) { return version(); }
 
 std::int32_t calx_sim_create(const char* case_json, const calx_sim_options* options, calx_sim** out) {
-  return create("calx_sim_create", case_json, options, out, [&](const calx_sim_options& o) {
-    // Stands in messages; relative paths start in its folder.
-    const std::filesystem::path folder = o.folder ? o.folder : ".";
-    return parse_case(case_json, (folder / "case given as text").string(), overrides(o));
-  });
+  return create("calx_sim_create", case_json, options, out,
+                [&](const calx_sim_options& o, const EffectLibrary& effects) {
+                  // Stands in messages; relative paths start in its folder.
+                  const std::filesystem::path folder = o.folder ? o.folder : ".";
+                  return parse_case(case_json, (folder / "case given as text").string(), overrides(o), &effects);
+                });
 }
 
 std::int32_t calx_sim_open(const char* case_path, const calx_sim_options* options, calx_sim** out) {
-  return create("calx_sim_open", case_path, options, out,
-                [&](const calx_sim_options& o) { return read_case(case_path, overrides(o)); });
+  return create("calx_sim_open", case_path, options, out, [&](const calx_sim_options& o, const EffectLibrary& effects) {
+    return read_case(case_path, overrides(o), &effects);
+  });
 }
 
 void calx_sim_destroy(calx_sim* sim) { delete sim; }

@@ -2,6 +2,7 @@
  * added when a struct grows at its tail; a row that changes breaks every plugin already built. */
 #include <calx/all.h>
 #include <calx/contact_law.h>
+#include <calx/sensor.h>
 
 #define SIZE(type, bytes) _Static_assert(sizeof(type) == (bytes), #type " has another size")
 #define AT(type, member, bytes) _Static_assert(offsetof(type, member) == (bytes), #type "." #member " moved")
@@ -84,3 +85,11 @@ AT(calx_servo, pose, 8);
 AT(calx_servo, advance, 16);
 AT(calx_servo, top_speed, 24);
 AT(calx_servo, reach, 32);
+SIZE(calx_sensor_view, 136);
+AT(calx_sensor_view, count, 8);
+AT(calx_sensor_view, time, 16);
+AT(calx_sensor_view, id, 24);
+AT(calx_sensor_view, x, 32);
+AT(calx_sensor_view, radius, 112);
+AT(calx_sensor_view, input, 120);
+AT(calx_sensor_view, input_count, 128);

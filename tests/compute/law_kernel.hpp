@@ -36,6 +36,7 @@ constexpr const char* kLawKernel = R"(
     c.r_eff = in[10 * stride + i]; c.m_eff = in[11 * stride + i];                                                \
     c.r_i = in[12 * stride + i]; c.r_j = in[13 * stride + i]; c.fn_before = in[14 * stride + i];                 \
     c.dt = dt;                                                                                                   \
+    c.time = R(0.0);                                                                                             \
     o.fx = o.fy = o.fz = o.mx = o.my = o.mz = R(0.0);                                                            \
     o.elastic = o.friction = o.damping = o.plastic = R(0.0);                                                     \
     none.calx_unused = R(0.0);                                                                                   \

@@ -65,7 +65,8 @@ inline const char* full_case() {
   "stages": [{"name": "fill", "until": "full", "add": ["canister"], "remove": ["rotor"], "start": ["lift"]}, {"name": "rest", "until": {"all": [{"mass": {"at_most": 1}}, {"count": {"at_least": 5}}]}}],
   "forces": [{"plugin": "calx.drag", "parameters": {"viscosity": 1.8e-5}}],
   "sensors": [
-    {"name": "canister mass", "kind": "mass", "region": "canister", "every": 0.01},
+    {"name": "canister mass", "kind": "mass", "region": "canister", "every": 0.01,
+     "instruments": [{"plugin": "calx.load-cell-lag", "column": "mass_kg", "parameters": {"time": 0.1}}]},
     {"name": "inline", "kind": "bulk-density", "region": {"box": {"min": [0, 0, 0], "max": [1, 1, 1]}}, "every": 0.01},
     {"name": "own", "plugin": "org.example.sensor", "every": {"value": 10, "unit": "ms"}, "depth": 3}
   ],
@@ -74,6 +75,8 @@ inline const char* full_case() {
   "rest": {"after": {"value": 5, "unit": "ms"}, "displacement": 1e-4, "force": 0.02},
   "scale": {"factor": 1, "cohesion": "bond"},
   "energy": true, "overlap_limit": 0.3,
+  "effects": [{"effect": "org.example.tilt", "version": "1.0.0", "on": {"canister": "canister"}, "parameters": {"tilt_deg": 1},
+               "expanded": true}],
   "assumptions": ["rotor diameter is not in the paper: 50 mm"],
   "plugins": {"org.example.sensor": {"sha256": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"}}
 })";

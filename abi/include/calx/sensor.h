@@ -20,6 +20,11 @@ typedef struct calx_sensor_view {
   const double *vx, *vy, *vz; /* m/s */
   const double *wx, *wy, *wz; /* rad/s */
   const double *mass, *radius; /* kg; m, of the sphere of equal volume */
+  /* For an instrument, a sensor that reads another sensor: what that one would have recorded now, SI; count is 0 then and
+   * the columns above are null. It gives one number, the figure that is recorded instead. Times rise from call to call;
+   * what it keeps between calls belongs to "calx.state/1". input_count is 0 for any other sensor. */
+  const double* input;
+  uint64_t input_count;
 } calx_sensor_view;
 
 typedef struct calx_sensor {

@@ -80,6 +80,7 @@
     c.r_j = CALX_N_IN(law, 13) ? rj[i] : R(0.0);                                                     \
     c.fn_before = CALX_N_IN(law, 14) ? fb[i] : R(0.0);                                               \
     c.dt = dt;                                                                                       \
+    c.time = time;                                                                                   \
     o.fx = o.fy = o.fz = o.mx = o.my = o.mz = R(0.0);                                                \
     o.elastic = o.friction = o.damping = o.plastic = R(0.0);                                         \
     law##_prop_LIST(CALX_N_PROP_LOAD) law##_state_LIST(CALX_N_STATE_LOAD)                            \
@@ -104,7 +105,7 @@
          *__restrict mx = b->out[3], *__restrict my = b->out[4], *__restrict mz = b->out[5],             \
          *__restrict ee = b->out[6], *__restrict ef = b->out[7], *__restrict ed = b->out[8],             \
          *__restrict ep = b->out[9];                                                                     \
-    const real dt = (real)b->dt;                                                                         \
+    const real dt = (real)b->dt, time = (real)b->time;                                                   \
     const uint32_t n = b->count;                                                                         \
     uint64_t k = 0;                                                                                      \
     CALX_ID(law##_pair) pair;                                                                            \
@@ -112,7 +113,7 @@
     law##_prop_LIST(CALX_N_PROP_POINTER) k = 0;                                                          \
     law##_state_LIST(CALX_N_STATE_POINTER)(void) k;                                                      \
     (void)nx, (void)ny, (void)nz, (void)vx, (void)vy, (void)vz, (void)wx, (void)wy, (void)wz;            \
-    (void)ov, (void)re, (void)me, (void)ri, (void)rj, (void)fb;                                          \
+    (void)ov, (void)re, (void)me, (void)ri, (void)rj, (void)fb, (void)time;                              \
     if (ee) {                                                                                            \
       CALX_N_LOOP(law, ee[i] = o.elastic; ef[i] = o.friction; ed[i] = o.damping; ep[i] = o.plastic;)     \
     } else {                                                                                             \

@@ -99,6 +99,7 @@ typedef struct CALX_ID(calx_contact) {
   real r_i, r_j;   /* m; r_j is 0 for a wall */
   real fn_before;  /* N */
   real dt;         /* s */
+  real time;       /* s, of the run; in single precision good to 1e-7 of itself */
 } CALX_ID(calx_contact);
 
 /* What a law writes. All zero before the call. The host adds lever-arm torques itself. */
