@@ -137,8 +137,16 @@ const calx_descriptor& PluginLibrary::descriptor(const PluginManifest& manifest)
 
 std::vector<PluginManifest> PluginLibrary::own_manifests() const {
   std::vector<PluginManifest> out;
-  for (const calx_descriptor* d : descriptors_)
-    out.push_back({d->id, d->kind, d->version, d->license, d->summary, path_, path_, sha256_, ""});
+  for (const calx_descriptor* d : descriptors_) {
+    PluginManifest m;
+    m.id = d->id;
+    m.kind = d->kind;
+    m.version = d->version;
+    m.license = d->license;
+    m.summary = d->summary;
+    m.library = m.path = path_;
+    out.push_back(m);
+  }
   return out;
 }
 
