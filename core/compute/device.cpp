@@ -113,6 +113,7 @@ DeviceEvent Device::read_later(const DeviceBuffer& from, void* data, std::size_t
   refuse_in_capture("a buffer is read");
   check_range(from, bytes, offset, "a read");
   if (bytes == 0) return {};
+  bytes_read_ += bytes;
   return DeviceEvent(do_read(*from.memory(), data, bytes, offset));
 }
 

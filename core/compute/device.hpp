@@ -203,6 +203,8 @@ class Device {
   void read(const DeviceBuffer& from, void* data, std::size_t bytes, std::size_t offset = 0);
   /// Returns at once; data must live until the event has been waited for.
   DeviceEvent read_later(const DeviceBuffer& from, void* data, std::size_t bytes, std::size_t offset = 0);
+  /// Of all reads so far.
+  std::uint64_t bytes_read() const { return bytes_read_; }
   void zero(const DeviceBuffer& buffer, std::size_t bytes, std::size_t offset = 0);
   /// The two ranges must not overlap.
   void copy(const DeviceBuffer& to, const DeviceBuffer& from, std::size_t bytes, std::size_t to_offset = 0,
@@ -280,6 +282,7 @@ class Device {
   std::vector<std::function<void()>> recorded_;
   std::vector<std::shared_ptr<const void>> kept_;
   std::size_t operations_ = 0;
+  std::uint64_t bytes_read_ = 0;
 };
 
 struct DeviceOptions {

@@ -2,12 +2,13 @@
  * precision of the laws, after their text: geometry is that of doubles, the law and what follows are of `real`.
  * calx_contact_laws is generated from the laws of the case. */
 
-/* Values of an entry that touches, in columns `entries` apart: force on i, torque on i, torque that j loses. */
+/* Values of an entry that touches, in columns `entries` apart: force on i, torque on i, torque that j loses; times: of
+ * the steps to come, s. */
 KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT spheres,
        GLOBAL const u32* RESTRICT material, GLOBAL const u32* RESTRICT first, GLOBAL const u32* RESTRICT second,
        GLOBAL u8* RESTRICT touching, GLOBAL double* RESTRICT history, GLOBAL const u32* RESTRICT law_of,
-       GLOBAL const double* RESTRICT law_numbers, GLOBAL real* RESTRICT out, GLOBAL double* RESTRICT share,
-       GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
+       GLOBAL const double* RESTRICT law_numbers, GLOBAL const double* RESTRICT times, GLOBAL real* RESTRICT out,
+       GLOBAL double* RESTRICT share, GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 e = ITEM;
   if (e >= n.entries || flags[FLAG_STOP]) return;
   const u32 i = first[e], j = second[e];
@@ -37,7 +38,7 @@ KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT sph
   c.r_i = (real)a->r;
   c.r_j = (real)b->r;
   c.dt = (real)n.dt;
-  c.time = (real)n.time;
+  c.time = (real)times[flags[FLAG_DONE]];
   const real arm_i = (real)(a->r - 0.5 * overlap), arm_j = (real)(b->r - 0.5 * overlap);
   const real wix = (real)a->wx, wiy = (real)a->wy, wiz = (real)a->wz;
   const real wjx = (real)b->wx, wjy = (real)b->wy, wjz = (real)b->wz;

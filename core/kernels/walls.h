@@ -1,4 +1,4 @@
-/* walls.h: contacts between spheres and parts, one item for each row of the wall list. */
+/* walls.h: contacts between spheres and parts: first where they touch, then what the laws say. */
 #ifndef CALX_WALLS_H
 #define CALX_WALLS_H
 
@@ -15,14 +15,19 @@ typedef struct part_state {
  * sphere, torque on the part, work done by the part. */
 #define WALL_VALUES 10u
 
-KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT material,
-       GLOBAL const u32* RESTRICT row_sphere, GLOBAL const u32* RESTRICT row_part,
-       GLOBAL const u32* RESTRICT first_element, GLOBAL const u32* RESTRICT elements,
-       GLOBAL const part_state* RESTRICT parts, SHAPE_TABLES, GLOBAL u8* RESTRICT touching,
-       GLOBAL vec3* RESTRICT normals, GLOBAL double* RESTRICT history, u64 history_stride,
-       GLOBAL const u32* RESTRICT law_of, GLOBAL const double* RESTRICT law_numbers, GLOBAL u32* RESTRICT counts,
-       GLOBAL double* RESTRICT out, GLOBAL double* RESTRICT share, GLOBAL double* RESTRICT energy,
-       GLOBAL u32* RESTRICT flags) {
+/* Where the spheres touch: contacts of each row, deepest first, at row * WALL_CONTACTS + number, and the slot of
+ * history that each has. */
+typedef struct wall_touch {
+  vec3 normal;     /* part frame */
+  double distance; /* m, of the sphere's centre */
+  u32 slot, old;   /* old: it touched at the last step */
+} wall_touch;
+
+KERNEL(find_wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT row_sphere,
+       GLOBAL const u32* RESTRICT row_part, GLOBAL const u32* RESTRICT first_element,
+       GLOBAL const u32* RESTRICT elements, GLOBAL const part_state* RESTRICT parts, SHAPE_TABLES,
+       GLOBAL u8* RESTRICT touching, GLOBAL vec3* RESTRICT normals, GLOBAL u32* RESTRICT counts,
+       GLOBAL wall_touch* RESTRICT touches, GLOBAL const u32* RESTRICT flags) {
   const u32 row = ITEM;
   if (row >= n.wall_rows || flags[FLAG_STOP]) return;
   GLOBAL const record* a = spheres + row_sphere[row];
@@ -85,62 +90,79 @@ KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
     normals[slot0 + slot_of[k]] = m.found[k].normal;
   }
   for (u32 q = 0; q < WALL_CONTACTS; ++q) touching[slot0 + q] = (u8)(taken >> q & 1u);
+  for (u32 k = 0; k < count; ++k) {
+    GLOBAL wall_touch* t = touches + (slot0 + k);
+    t->normal = m.found[k].normal;
+    t->distance = m.found[k].distance;
+    t->slot = slot_of[k];
+    t->old = old >> slot_of[k] & 1u;
+  }
+}
 
+/* Laws of the contacts found, one item for each place of a contact; times: of the steps to come, s. */
+KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT material,
+       GLOBAL const u32* RESTRICT row_sphere, GLOBAL const u32* RESTRICT row_part,
+       GLOBAL const part_state* RESTRICT parts, GLOBAL const u32* RESTRICT counts,
+       GLOBAL const wall_touch* RESTRICT touches, GLOBAL double* RESTRICT history, u64 history_stride,
+       GLOBAL const u32* RESTRICT law_of, GLOBAL const double* RESTRICT law_numbers,
+       GLOBAL const double* RESTRICT times, GLOBAL double* RESTRICT out, GLOBAL double* RESTRICT share,
+       GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
+  const u32 at = ITEM, row = at / WALL_CONTACTS, slot0 = row * WALL_CONTACTS;
+  if (row >= n.wall_rows || flags[FLAG_STOP] || at - slot0 >= counts[row]) return;
+  GLOBAL const record* a = spheres + row_sphere[row];
+  GLOBAL const part_state* part = parts + ((u64)flags[FLAG_DONE] * n.part_stride + row_part[row]);
+  GLOBAL const wall_touch* t = touches + at;
+  const vec3 centre = position_of(a);
   const u32 pair = material[row_sphere[row]] * n.materials + part->material;
   const u64 stride = (u64)n.wall_rows * WALL_CONTACTS;
-  for (u32 k = 0; k < count; ++k) {
-    const double distance = m.found[k].distance;
-    const vec3 normal = rotate3(part->turn, m.found[k].normal);
-    const vec3 arm = scale3_f64(-distance, normal);
-    const vec3 point = add3_f64(centre, arm);
-    const vec3 lever = sub3_f64(point, part->centre);
-    const vec3 wall = add3_f64(part->velocity, cross3_f64(part->spin, lever));
-    const vec3 v = sub3_f64(add3_f64(velocity_of(a), cross3_f64(spin_of(a), arm)), wall);
-    const vec3 spin = sub3_f64(spin_of(a), part->spin);
-    calx_contact_f64 c;
-    c.overlap = a->r - distance;
-    c.nx = normal.x;
-    c.ny = normal.y;
-    c.nz = normal.z;
-    c.vx = v.x;
-    c.vy = v.y;
-    c.vz = v.z;
-    c.wx = spin.x;
-    c.wy = spin.y;
-    c.wz = spin.z;
-    c.r_eff = a->r;
-    c.m_eff = a->m;
-    c.r_i = a->r;
-    c.r_j = 0.0;
-    c.dt = n.dt;
-    c.time = n.time;
-    calx_wrench_f64 w;
-    if (!calx_contact_laws_f64(law_of[pair], &c, history + (slot0 + slot_of[k]), history_stride,
-                               !(old >> slot_of[k] & 1u), law_numbers, &w)) {
-      ATOMIC_MAX(flags + FLAG_MISSING_LAW, pair + 1u);
-      counts[row] = 0;
-      return;
-    }
-    const vec3 f = make3_f64(w.fx, w.fy, w.fz), moment = make3_f64(w.mx, w.my, w.mz);
-    const vec3 on_sphere = add3_f64(cross3_f64(arm, f), moment), on_part = add3_f64(cross3_f64(lever, f), moment);
-    const u64 at = (u64)slot0 + k;
-    out[at] = f.x;
-    out[stride + at] = f.y;
-    out[2 * stride + at] = f.z;
-    out[3 * stride + at] = on_sphere.x;
-    out[4 * stride + at] = on_sphere.y;
-    out[5 * stride + at] = on_sphere.z;
-    out[6 * stride + at] = on_part.x;
-    out[7 * stride + at] = on_part.y;
-    out[8 * stride + at] = on_part.z;
-    out[9 * stride + at] = (dot3_f64(f, wall) + dot3_f64(moment, part->spin)) * n.dt;
-    share[at] = c.overlap / a->r;
-    if (n.ledger) {
-      energy[at] = w.elastic;
-      energy[stride + at] = w.friction;
-      energy[2 * stride + at] = w.damping;
-      energy[3 * stride + at] = w.plastic;
-    }
+  const double distance = t->distance;
+  const vec3 normal = rotate3(part->turn, t->normal);
+  const vec3 arm = scale3_f64(-distance, normal);
+  const vec3 point = add3_f64(centre, arm);
+  const vec3 lever = sub3_f64(point, part->centre);
+  const vec3 wall = add3_f64(part->velocity, cross3_f64(part->spin, lever));
+  const vec3 v = sub3_f64(add3_f64(velocity_of(a), cross3_f64(spin_of(a), arm)), wall);
+  const vec3 spin = sub3_f64(spin_of(a), part->spin);
+  calx_contact_f64 c;
+  c.overlap = a->r - distance;
+  c.nx = normal.x;
+  c.ny = normal.y;
+  c.nz = normal.z;
+  c.vx = v.x;
+  c.vy = v.y;
+  c.vz = v.z;
+  c.wx = spin.x;
+  c.wy = spin.y;
+  c.wz = spin.z;
+  c.r_eff = a->r;
+  c.m_eff = a->m;
+  c.r_i = a->r;
+  c.r_j = 0.0;
+  c.dt = n.dt;
+  c.time = times[flags[FLAG_DONE]];
+  calx_wrench_f64 w;
+  if (!calx_contact_laws_f64(law_of[pair], &c, history + (slot0 + t->slot), history_stride, !t->old, law_numbers, &w)) {
+    ATOMIC_MAX(flags + FLAG_MISSING_LAW, pair + 1u);
+    return;
+  }
+  const vec3 f = make3_f64(w.fx, w.fy, w.fz), moment = make3_f64(w.mx, w.my, w.mz);
+  const vec3 on_sphere = add3_f64(cross3_f64(arm, f), moment), on_part = add3_f64(cross3_f64(lever, f), moment);
+  out[at] = f.x;
+  out[stride + at] = f.y;
+  out[2 * stride + at] = f.z;
+  out[3 * stride + at] = on_sphere.x;
+  out[4 * stride + at] = on_sphere.y;
+  out[5 * stride + at] = on_sphere.z;
+  out[6 * stride + at] = on_part.x;
+  out[7 * stride + at] = on_part.y;
+  out[8 * stride + at] = on_part.z;
+  out[9 * stride + at] = (dot3_f64(f, wall) + dot3_f64(moment, part->spin)) * n.dt;
+  share[at] = c.overlap / a->r;
+  if (n.ledger) {
+    energy[at] = w.elastic;
+    energy[stride + at] = w.friction;
+    energy[2 * stride + at] = w.damping;
+    energy[3 * stride + at] = w.plastic;
   }
 }
 

@@ -339,6 +339,7 @@ Simulation::Counters Simulation::counters() const {
   const Engine& e = impl_->w.engine;
   Counters c;
   c.rebuilds = e.rebuilds();
+  c.bytes_fetched = e.bytes_fetched();
   c.pair_entries = e.pair_entry_count();
   c.touching = e.touching();
   c.wall_entries = e.wall_row_count();

@@ -70,6 +70,7 @@ class Simulation {
   std::size_t memory_bytes() const;
   struct Counters {
     std::uint64_t rebuilds = 0, pair_entries = 0, touching = 0, wall_entries = 0, asleep = 0;
+    std::uint64_t bytes_fetched = 0;  // from a device
     double seconds_neighbour = 0, seconds_contacts = 0, seconds_integrate = 0, seconds_other = 0;
     double largest_overlap = 0;  // share of the radius, over the run
   };

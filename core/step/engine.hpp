@@ -135,6 +135,8 @@ class Engine {
   std::uint64_t asleep() const;    // particles that rest
   double largest_overlap() const;  // share of the radius, over the run
   std::size_t memory_bytes() const;
+  /// Bytes that came back from the device so far.
+  std::uint64_t bytes_fetched() const;
   std::uint32_t history_columns() const { return history_.columns; }
 
   /// Text that says what each history column is, per material pair; a checkpoint of another layout is refused.

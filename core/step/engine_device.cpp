@@ -53,6 +53,8 @@ double Engine::largest_overlap() const {
   return largest_overlap_;
 }
 
+std::uint64_t Engine::bytes_fetched() const { return device_ ? device_->device().bytes_read() : 0; }
+
 void Engine::place(const StepTable& table, std::size_t step) {
   for (std::size_t k = 0; k < parts.size(); ++k) parts[k].pose = table.poses[step * parts.size() + k];
 }

@@ -49,6 +49,7 @@ void Engine::OnDevice::build(bool fast) {
   m.pair_contacts = m.module.kernel(mixed ? "pair_contacts_f32" : "pair_contacts_f64");
   m.sum_contacts = m.module.kernel(mixed ? "sum_contacts_mixed" : "sum_contacts");
 #define CALX_KERNEL_OF(of, name) m.name = m.of.kernel(#name)
+  CALX_KERNEL_OF(module, find_wall_contacts);
   CALX_KERNEL_OF(module, wall_contacts);
   CALX_KERNEL_OF(module, move_spheres);
   CALX_KERNEL_OF(module, move_clumps);

@@ -21,7 +21,7 @@ struct DeviceLevel {
   double reach, inverse;  // m, 1/m
   std::uint32_t low[3], high[3], stride_y, stride_z, mask, start, folded, unused;
 };
-constexpr std::size_t kSeatBytes = 40, kChunkBytes = 24;
+constexpr std::size_t kSeatBytes = 40, kChunkBytes = 24, kTouchBytes = 40;  // wall_touch of walls.h
 static_assert(sizeof(Extent) == 64 && sizeof(DeviceLevel) == 64);
 
 /// Cells are wider than the largest pair distance by this share; their coordinates count from so many cells before the
@@ -268,6 +268,7 @@ void Engine::OnDevice::size_step() {
   m.reserve(m.pair_share, entries_ * sizeof(double));
   if (o.ledger) m.reserve(m.pair_energy, kEnergies * entries_ * sizeof(double));
   m.reserve(m.wall_counts, rows_ * sizeof(std::uint32_t));
+  m.reserve(m.wall_touches, slots * kTouchBytes);
   m.reserve(m.wall_out, kWallValues * slots * sizeof(double));
   m.reserve(m.wall_share, slots * sizeof(double));
   if (o.ledger) m.reserve(m.wall_energy, kEnergies * slots * sizeof(double));

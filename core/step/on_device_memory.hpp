@@ -34,9 +34,9 @@ struct Engine::OnDevice::Memory {
   Device& device;
   DeviceModule module, list_module;
   // Of a step.
-  DeviceKernel pair_contacts, wall_contacts, sum_contacts, move_spheres, move_clumps, drift_spheres, drift_clumps,
-      particle_forces, kick_particles, fold_pairs, fold_walls, fold_particles, fold_chunks, fold_drift, close_sums,
-      close_step, close_drift, make_chunks;
+  DeviceKernel pair_contacts, find_wall_contacts, wall_contacts, sum_contacts, move_spheres, move_clumps, drift_spheres,
+      drift_clumps, particle_forces, kick_particles, fold_pairs, fold_walls, fold_particles, fold_chunks, fold_drift,
+      close_sums, close_step, close_drift, make_chunks;
   // Of lists.
   DeviceKernel wrap_particles, add_wrapped, measure_spheres, measure_particles, join_extents, morton_keys, count_digits,
       move_by_digit, take_rows, count_members, order_members, set_margins, keep_places, count_classes, count_cells,
@@ -58,8 +58,8 @@ struct Engine::OnDevice::Memory {
   DeviceBuffer extents[2], keys[2], order[2], used, counts, more_counts, digit_counts, spare, sphere_order, classes,
       bounds, levels, cell_of, level_of, cell_counts, cell_start, seats, element_first, places;
   // Of a step.
-  DeviceBuffer parts, times, added, pair_out, pair_share, pair_energy, wall_counts, wall_out, wall_share, wall_energy,
-      sums, particle_energy, pair_sums, wall_sums, particle_sums, chunk_sums, totals, flags;
+  DeviceBuffer parts, times, added, pair_out, pair_share, pair_energy, wall_counts, wall_touches, wall_out, wall_share,
+      wall_energy, sums, particle_energy, pair_sums, wall_sums, particle_sums, chunk_sums, totals, flags;
   std::uint32_t sphere_spans = 0, particle_spans = 0;
   DeviceGraph first_half, second_half;  // of a step: what verlet does before the contacts; all else
   double recorded_dt = -1;              // s; of the graphs

@@ -184,3 +184,107 @@ TEST_CASE("sources, drag and particles that leave: the bits of the processor on 
   check_scene(pouring("verlet"), 900, 150);
   check_scene(pouring("euler"), 900, 150);
 }
+
+TEST_CASE("between looks nothing comes back from a device but flags, and numbers for the size of lists") {
+  for (const std::string& device : test_devices()) {
+    CAPTURE(device);
+    Simulation sim(sphere_bed("euler"), on(device));
+    advance(sim, 10);
+    const Simulation::Counters before = sim.counters();
+    advance(sim, 160);
+    // counters() looks at the totals: 14 sums, 6 loads of one part, 2 more.
+    const std::uint64_t totals = 22 * sizeof(double);
+    const Simulation::Counters after = sim.counters();
+    const std::uint64_t rebuilds = after.rebuilds - before.rebuilds, batches = 160 / 16 + rebuilds;
+    CHECK(rebuilds >= 3);
+    // Seven flags for each batch. For lists: a box and the classes of reach, the bits of Morton keys, and four counts.
+    const std::uint64_t most = batches * 28 + rebuilds * (64 + 32 * 4 + 8 + 4 + 8 + 8) + totals;
+    CHECK(after.bytes_fetched - before.bytes_fetched <= most);
+    CHECK(most < 3000 * sizeof(Record) / 50);
+  }
+}
+
+namespace {
+
+/// Sizes from 1 to 8 in a periodic box, so that spheres stand in several levels, and one sphere far from all others, so
+/// that cells of the finest level share numbers.
+CaseFile mixture(const std::string& integrator) {
+  CaseText c;
+  c.gravity = "[1, 0, -9.81]";
+  c.domain = R"({"min": [0, 0, -0.01], "max": [0.05, 0.05, 30], "periodic": [true, true, false]})";
+  c.time = R"({"integrator": ")" + integrator + R"(", "step": 5e-6, "end": 10})";
+  c.more = R"("energy": true)";
+  c.parts = R"([{"name": "floor", "geometry": "calx.plane", "material": "sand",
+                 "parameters": {"point": [0.025, 0.025, 0], "half_u": 0.2, "half_v": 0.2}}])";
+  CaseFile file = c.file();
+  const auto sized = [&](double scale, std::size_t count, std::size_t side, double low, double down) {
+    std::vector<Given> all =
+        lattice(count, side, side, 2.1e-3 * scale, {0, 0, low}, 4e-5 * scale, 0.4, static_cast<std::uint64_t>(scale));
+    for (Given& g : all) g.v.z -= down;
+    SourceSettings s = given_source("ball", all);
+    s.size.scale = scale;
+    file.settings.sources.push_back(s);
+  };
+  sized(1, 900, 22, 2e-4, 0);
+  sized(2, 150, 11, 5e-3, 0.5);
+  sized(8, 8, 2, 1.4e-2, 1);
+  file.settings.sources.push_back(given_source("ball", {{{0.02, 0.02, 29}, {}, {}, {}}}));
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("sizes from 1 to 8 across periodic faces: the lists and bits of the processor on every device") {
+  check_scene(mixture("euler"), 500, 100);
+  check_scene(mixture("verlet"), 300, 60);
+}
+
+TEST_CASE("events, stages and the end of a run come in the same step on a device") {
+  CaseFile file = pouring("euler");
+  Simulation reference(file, on("cpu"));
+  std::vector<std::string> expected;
+  const auto collect = [](Simulation& sim, std::vector<std::string>& all) {
+    for (int k = 0; k < 800; k += static_cast<int>(sim.step(static_cast<std::uint64_t>(800 - k))))
+      for (auto& m : sim.take_messages()) all.push_back(std::to_string(sim.step_count()) + " " + m);
+  };
+  for (int k = 0; k < 800; ++k) {
+    reference.step();
+    for (auto& m : reference.take_messages()) expected.push_back(m);
+  }
+  CHECK(expected.size() >= 3);
+  Simulation sim(file, on("host"));
+  std::vector<std::string> found;
+  collect(sim, found);
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) CHECK(found[k].substr(found[k].find(' ') + 1) == expected[k]);
+}
+
+TEST_CASE("a guard stops a run in the same step and words on a device") {
+  const auto words = [](const std::string& device, const CaseFile& file, std::uint64_t& steps) {
+    Simulation sim(file, on(device));
+    std::string text;
+    try {
+      advance(sim, 4000);
+    } catch (const Error& e) {
+      text = e.what();
+    }
+    steps = sim.step_count();
+    return text;
+  };
+  CaseFile pressed = sphere_bed("euler");
+  pressed.settings.overlap_limit = 0.05;
+  CaseText open;
+  open.domain = R"({"min": [-0.01, -0.01, -0.01], "max": [0.01, 0.01, 0.01]})";
+  const CaseFile lost = with_given(open, "ball", {{{0, 0, 0}, {1, 0.2, 0}, {}, {}}, {{0, 0.005, 0}, {}, {}, {}}});
+  for (const CaseFile& file : {pressed, lost}) {
+    std::uint64_t steps = 0, other = 0;
+    const std::string expected = words("cpu", file, steps);
+    CHECK(expected.find("run stopped at t = ") == 0);
+    CHECK(steps > 10);
+    for (const std::string& device : test_devices()) {
+      CAPTURE(device);
+      CHECK(words(device, file, other) == expected);
+      CHECK(other == steps);
+    }
+  }
+}
