@@ -14,6 +14,10 @@
 // grain's: what has the unit N or J/m^2 gets one more factor f. An adhesive stiffness (N/m^n) cannot be told from an
 // elastic one by its unit and follows the first rule either way.
 //
+// Options of a law as a whole, particle forces, parts, motions and sensors keep what the case gives them. A time step
+// that the case gives grows by f, one that it leaves open follows from the limits of the larger grains, which grow by f
+// too.
+//
 // Not kept: everything that counts grains. A slot of w has w / f grains, so flow through openings (Beverloo's W - k d),
 // wedging and hold-up change: that is what the key is there to study.
 #pragma once

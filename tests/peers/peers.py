@@ -4,6 +4,9 @@
   peers.py lift N        row N (from 1) of tests/data/wheat/cylinder_lift.csv
   peers.py discharge N   row N of tests/data/wheat/discharge.csv
   peers.py drum RPM      GranuDrum with MCC pellets (tests/data/granudrum), with the friction given
+  peers.py penetration --start FILE, soft-drum --start FILE, full-drum --start FILE
+                         set-ups of Dosta et al. from their own start files (dosta.py); their curves are not kept here, so
+                         the row holds our figure alone; --end shortens the run
   peers.py all           every wheat point, one after the other
   peers.py table         results.jsonl as a table: ours, theirs, the error, their scatter and our seeds' scatter
 
@@ -23,12 +26,14 @@ import tempfile
 import h5py
 import numpy as np
 
+import dosta
 import evaluate
 
 HERE = pathlib.Path(__file__).resolve().parent
 DATA = HERE.parent / "data"
 RESULTS = HERE / "results.jsonl"
 D = 0.0037  # m, the middle size of the wheat
+START = ("penetration", "soft-drum", "full-drum")
 
 
 def rows(path):
@@ -67,8 +72,8 @@ def lift(options, number, folder):
     settled, end = frame(folder, 0.4), frame(folder, summary["time"])
     density = evaluate.column_density(settled[2], settled[3], 1400, D, np.pi * 0.04**2)
     own = summary["sensors"]["angle of repose"]["last"]
-    return [{"figure": "angle_deg", "ours": evaluate.pile_angle(*end, D), "theirs": row["angle_deg"], "their_sd": row["angle_sd_deg"],
-             "sensor": own["angle_deg"], "sensor_sd": own["sd_deg"]},
+    return [{"figure": "angle_deg", "ours": evaluate.pile_angle(*end, D), "theirs": row["angle_deg"],
+             "their_sd": row["angle_sd_deg"], "sensor": own["angle_deg"], "sensor_sd": own["sd_deg"]},
             {"figure": "bulk_density_kg_m3", "ours": density, "theirs": row["bulk_density_kg_m3"], "their_sd": 4.0}], summary
 
 
@@ -80,7 +85,8 @@ def discharge(options, number, folder):
     time, mass = (np.array([float(r[name]) for r in table]) for name in ("time_s", "mass_kg"))
     sensor = summary["sensors"]["discharge"]["last"]
     return [{"figure": "rate_g_s", "ours": 1e3 * evaluate.rate(time, mass), "theirs": row["rate_g_s"],
-             "their_sd": row["rate_sd_g_s"], "sensor": 1e3 * sensor["rate_kg_s"], "beverloo": 1e3 * sensor["beverloo_kg_s"]}], summary
+             "their_sd": row["rate_sd_g_s"], "sensor": 1e3 * sensor["rate_kg_s"],
+             "beverloo": 1e3 * sensor["beverloo_kg_s"]}], summary
 
 
 def surface_errors(ours, theirs, radius):
@@ -98,34 +104,57 @@ def drum(options, rpm, folder):
                         "/contacts/0/parameters/rolling_friction": options.rolling_friction,
                         "/sources/0/count": options.pellets, "/time/step": options.step,
                         "/motions/turn/parameters/duration": 25 * 60 / rpm,
-                        "/events/steady/when/after/delay": options.spin_up, "/time/end": 0.3 + options.spin_up + 0.3}, folder)
+                        "/events/steady/when/after/delay": options.spin_up,
+                        "/time/end": 0.3 + options.spin_up + 0.3}, folder)
     last = summary["sensors"]["surface"]["last"]
     given = next(r for r in rows(DATA / "granudrum" / "free_surface_summary.csv") if r["rpm"] == rpm)
-    curve = next(c for c in json.loads((folder / "fields.json").read_text(encoding="utf-8"))["curves"] if c["name"] == "surface")
-    table = np.array([[r["x_mm"], r["z_mm"]] for r in rows(DATA / "granudrum" / "free_surface_15_45rpm.csv") if r["rpm"] == rpm])
+    curves = json.loads((folder / "fields.json").read_text(encoding="utf-8"))["curves"]
+    curve = next(c for c in curves if c["name"] == "surface")
+    photograph = rows(DATA / "granudrum" / "free_surface_15_45rpm.csv")
+    table = np.array([[r["x_mm"], r["z_mm"]] for r in photograph if r["rpm"] == rpm])
     rms, area = surface_errors((np.array(curve["x"]), np.array(curve["y"])), table * 1e-3, 0.042)
-    extra = {"rms_mm": 1e3 * rms, "area_mm2": 1e6 * area, "fill_ours": last["fill_1"], "fill_theirs": given["dark_area_fraction_r_lt_0.96R"],
-             "friction": options.friction, "rolling_friction": options.rolling_friction, "pellets": options.pellets}
-    return [{"figure": "near_angle_deg", "ours": last["angle_deg"], "theirs": given["angle_deg_absx_lt_12mm"], "their_sd": None, **extra},
-            {"figure": "far_angle_deg", "ours": last["far_deg"], "theirs": given["angle_deg_absx_lt_25mm"], "their_sd": None, **extra}], summary
+    extra = {"their_sd": None, "rms_mm": 1e3 * rms, "area_mm2": 1e6 * area, "fill_ours": last["fill_1"],
+             "fill_theirs": given["dark_area_fraction_r_lt_0.96R"]}
+    return [{"figure": "near_angle_deg", "ours": last["angle_deg"], "theirs": given["angle_deg_absx_lt_12mm"], **extra},
+            {"figure": "far_angle_deg", "ours": last["far_deg"], "theirs": given["angle_deg_absx_lt_25mm"], **extra}], summary
+
+
+def start_file(options, kind, folder):
+    """The figure at the end of a set-up of Dosta et al.: height of the ball, or grains in two quadrants of the drum."""
+    case, _ = dosta.write_case(kind, options.start, folder.with_name(folder.name + "-case"))
+    summary = run_case(options, case, {} if options.end is None else {"/time/end": options.end}, folder)
+    if kind == "penetration":
+        *_, z, r = frame(folder, summary["time"])
+        found = {"ball_height_m": float(z[np.argmax(r)])}
+    else:
+        found = {f"{name.replace(' ', '_')}_1": summary["sensors"][name]["last"]["particles_1"]
+                 for name in ("lower left", "upper right")}
+    return [{"figure": name, "ours": value, "theirs": None, "their_sd": None, "at_s": summary["time"]}
+            for name, value in found.items()], summary
 
 
 def command_of(options, kind, number):
     """What repeats the run, without folders of the machine."""
+    if kind in START:
+        end = "" if options.end is None else f" --end {options.end:g}"
+        return f"peers.py {kind} --start {pathlib.Path(options.start).name}{end}"
     words = f"peers.py {kind} {number} --seed {options.seed} --step {options.step:g}"
     if kind == "drum":
-        words += f" --friction {options.friction} --rolling-friction {options.rolling_friction} --pellets {options.pellets}"
-        words += f" --spin-up {options.spin_up:g}"
+        words += f" --friction {options.friction} --rolling-friction {options.rolling_friction}"
+        words += f" --pellets {options.pellets} --spin-up {options.spin_up:g}"
     return words
 
 
 def one(options, kind, number):
     with tempfile.TemporaryDirectory() as scratch:
-        folder = pathlib.Path(options.keep or scratch) / f"{kind}-{number}-seed{options.seed}"
-        found, summary = {"lift": lift, "discharge": discharge, "drum": drum}[kind](options, number, folder)
+        words = [str(word) for word in (kind, number, f"seed{options.seed}") if word is not None]
+        folder = pathlib.Path(options.keep or scratch) / "-".join(words)
+        make = {"lift": lift, "discharge": discharge, "drum": drum}
+        found, summary = start_file(options, kind, folder) if kind in START else make[kind](options, number, folder)
     for figure in found:
-        line = {"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), "point": f"{kind} {number}",
-                "seed": options.seed, "step": summary["time_step"], "particles": summary["particles"], "git": summary["provenance"]["git"],
+        line = {"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
+                "point": kind if kind in START else f"{kind} {number}", "seed": options.seed, "step": summary["time_step"],
+                "particles": summary["particles"], "git": summary["provenance"]["git"],
                 "command": command_of(options, kind, number), "note": options.note, **figure}
         if options.write:
             with open(RESULTS, "a", encoding="ascii") as out:
@@ -144,6 +173,9 @@ def table():
     for (point, figure), found in sorted(groups.items()):
         ours = [r["ours"] for r in found]
         mean, theirs, sd = statistics.mean(ours), found[0]["theirs"], found[0]["their_sd"]
+        if theirs is None:
+            print(f"| {point}, {found[0]['at_s']:g} s | {figure} | {mean:.4g} | - ({len(ours)}) | not kept here | - | - |")
+            continue
         spread = f"{statistics.stdev(ours):.2f} ({len(ours)})" if len(ours) > 1 else f"- ({len(ours)})"
         share = "" if figure.endswith("_deg") else f" ({100 * (mean - theirs) / theirs:+.1f} %)"
         print(f"| {point} | {figure} | {mean:.2f} | {spread} | {theirs:.2f} | {'-' if sd is None else format(sd, '.2f')} "
@@ -152,9 +184,11 @@ def table():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=["lift", "discharge", "drum", "all", "table"])
+    parser.add_argument("kind", choices=["lift", "discharge", "drum", *START, "all", "table"])
     parser.add_argument("number", nargs="?", type=int)
     parser.add_argument("--calx", default=os.environ.get("CALX", str(HERE.parent.parent / "build/release/bin/calx")))
+    parser.add_argument("--start", help="start file of penetration and drums")
+    parser.add_argument("--end", type=float, help="s, of those")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--step", type=float, default=8e-6, help="s")
     parser.add_argument("--threads", type=int, default=1)
@@ -173,6 +207,10 @@ def main():
             for number in range(1, len(rows(DATA / "wheat" / name)) + 1):
                 one(options, kind, number)
         return None
+    if options.kind in START:
+        if options.start is None:
+            parser.error(f"{options.kind} needs --start FILE")
+        return one(options, options.kind, None)
     if options.number is None:
         parser.error(f"{options.kind} needs a number")
     return one(options, options.kind, options.number)

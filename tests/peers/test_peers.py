@@ -3,6 +3,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -57,6 +58,21 @@ class Rules(unittest.TestCase):
         self.assertAlmostEqual(rms, 1e-3, delta=1e-12)
         # Inside sqrt(0.6) R the line reaches sqrt(0.6) R / sqrt(1.25) to either side.
         self.assertAlmostEqual(area, 1e-3 * 2 * np.sqrt(0.6 / 1.25) * 0.042, delta=1e-7)
+
+
+class Starts(unittest.TestCase):
+    def test_a_start_file_becomes_a_case_that_passes_the_check(self):
+        with tempfile.TemporaryDirectory() as folder:
+            start = pathlib.Path(folder) / "start.txt"
+            start.write_text("Radius[m] PosX[m] PosY[m] PosZ[m]\n 0.002 0 0 -0.05\n 0.001 0.01 0 -0.05\n 0.001 0.02 0 -0.05\n"
+                             " 5 0.01 0.01 0 0 0.06\n")
+            for kind, count in (("penetration", 2), ("soft-drum", 3), ("full-drum", 3)):
+                path, found = peers.dosta.write_case(kind, start, folder)
+                self.assertEqual(found, count)
+                done = subprocess.run([os.environ["CALX"], "check", str(path)], capture_output=True, text=True)
+                if done.returncode == 4:
+                    self.skipTest(done.stderr)
+                self.assertEqual(done.returncode, 0, (kind, done.stderr))
 
 
 class Cases(unittest.TestCase):

@@ -14,7 +14,7 @@ inline std::vector<Setup> all_setups() {
   Values hm_roll = hm;
   hm_roll.insert({{"rolling_friction", 0.1}, {"rolling_stiffness", 500}, {"rolling_viscosity", 0.01}});
   std::vector<Setup> all;
-  for (const char* rolling : {"none", "a", "epsd", "epsd2", "sds"}) {
+  for (const char* rolling : {"none", "a", "epsd", "epsd2", "sds", "cdt"}) {
     all.push_back({"calx-hertz-mindlin", {{"rolling", rolling}}, hm_roll});
     Values linear = hm_roll;
     linear["kn"] = 1e3;

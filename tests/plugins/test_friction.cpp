@@ -116,7 +116,7 @@ TEST_CASE("T8: with rolling resistance it rests, rolls or slides as slope and fr
 
 TEST_CASE("T8: spin-down without sliding friction, and roll-out") {
   const double mu_r = 0.1, w0 = 100;
-  for (const char* rolling : {"a", "epsd"})
+  for (const char* rolling : {"a", "cdt", "epsd"})
     for (const Model& m : models(0, rolling, mu_r)) {
       CAPTURE(std::string(m.library));
       CAPTURE(std::string(rolling));
@@ -138,6 +138,28 @@ TEST_CASE("T8: spin-down without sliding friction, and roll-out") {
       CHECK_NEAR(d.i.x.x, 0.7 * v0 * v0 / (mu_r * kG), 1e-2);
       CHECK(std::fabs(d.i.v.x) < 1e-3 * v0);
     }
+}
+
+TEST_CASE("cdt: a sphere that twists as well is braked by the rolling share of its spin") {
+  const double mu_r = 0.1, w0 = 100, k = 2.5 * mu_r * kG / kR;
+  for (const Model& m : models(0, "cdt", mu_r)) {
+    CAPTURE(std::string(m.library));
+    const Law law(m.library, m.choices, m.values);
+    // Without twist as type a.
+    Duel plain = placed(law, 0, 0, w0);
+    run(plain, 0.1);
+    CHECK_NEAR(plain.i.w.y, w0 - k * 0.1, 5e-3);
+    // dw/dt = -k w / sqrt(w^2 + c^2) at a twist c that stays: F(w0) - F(w) = k t, F = sqrt(w^2 + c^2) - c asinh(c / w).
+    for (const double twist : {30.0, 200.0}) {
+      CAPTURE(twist);
+      Duel d = placed(law, 0, 0, w0);
+      d.i.w.z = twist;
+      run(d, 0.1);
+      const auto f = [&](double w) { return std::hypot(w, twist) - twist * std::asinh(twist / w); };
+      CHECK_NEAR(d.i.w.z, twist, 1e-9);
+      CHECK_NEAR(f(w0) - f(d.i.w.y), k * 0.1, 5e-3);
+    }
+  }
 }
 
 TEST_CASE("T8: gross-sliding oblique impact") {

@@ -7,6 +7,8 @@
  *
  *   a      no spring: the full torque against the spin. Near rest it is limited to what brakes the pair within a few
  *          steps, so that it does not chatter.
+ *   cdt    as a, but the torque lies along the whole relative spin and only its part in the contact plane acts: a contact
+ *          that twists as well is braked less (LIGGGHTS)
  *   epsd   spring 2.25 rolling_friction^2 k_n R*^2 and dashpot 2 eta sqrt(I_r k_r): "type C", holds piles at rest
  *   epsd2  spring k_t R*^2, no dashpot
  *   sds    spring k_r R*^2 and dashpot gamma_r R*^2, both given
@@ -20,7 +22,7 @@
   X(roll_k, "N/m", 0, 1e15, 0, 0, "rolling stiffness given outright")                                  \
   X(roll_c, "kg/s", 0, 1e15, 0, 0, "rolling dashpot given outright")                                   \
   X(roll_eta, "1", 0, 100, 0, 0, "rolling dashpot over the critical one")                              \
-  X(roll_type_a, "1", 0, 1, 0, 0, "1: constant torque against the spin, no spring")
+  X(roll_type_a, "1", 0, 2, 0, 0, "1: constant torque against the rolling spin, no spring; 2: against the whole spin")
 /* The seven numbers of a pair row, as calx_roll takes them. */
 #define CALX_ROLLING(p)                                                                                    \
   p->rolling_friction, p->roll_of_kn, p->roll_of_kt, p->roll_k, p->roll_c, p->roll_eta, p->roll_type_a
@@ -56,8 +58,11 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real mr2 = c->m_eff * (c->r_i * (c->r_j > R(0.0) ? c->r_j : c->r_i));
   const real cr = c_given * r2 + R(2.0) * eta * calx_sqrt(R(1.4) * mr2 * kr);
   /* Type a below its cap: 2/5 m r^2 / dt would stop the spin in one step; an eighth, so that eight contacts may act. */
-  const real brake = type_a * R(0.05) * mr2 / c->dt;
-  const real cap = rolling_friction * c->r_eff * fn;
+  const real steady = calx_min(type_a, R(1.0));
+  const real brake = steady * R(0.05) * mr2 / c->dt;
+  const real roll2 = wx * wx + wy * wy + wz * wz;
+  const real share = type_a > R(1.5) ? calx_sqrt(roll2 / calx_max(roll2 + wn * wn, tiny)) : R(1.0);
+  const real cap = rolling_friction * c->r_eff * fn * share;
   const real cap2 = cap * cap;
 
   /* As in calx_slide: carried into the new plane; shrunk while the stiffness grows. */
@@ -73,7 +78,7 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real oy = turn * py;
   const real oz = turn * pz;
 
-  const real stretch = (R(1.0) - type_a) * c->dt;
+  const real stretch = (R(1.0) - steady) * c->dt;
   const real tx = ox + stretch * wx;
   const real ty = oy + stretch * wy;
   const real tz = oz + stretch * wz;
@@ -101,8 +106,8 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real gz = slip * az;
   /* The brake of type a has no force of the step before: its whole torque counts, a spring's by the trapezoid. */
   const real k_old = calx_max(kr, kr_before);
-  const real share = R(0.5) * (R(1.0) + type_a);
-  const real work = c->dt * (R(0.5) * k_old * (ox * wx + oy * wy + oz * wz) + share * (gx * wx + gy * wy + gz * wz));
+  const real weight = R(0.5) * (R(1.0) + steady);
+  const real work = c->dt * (R(0.5) * k_old * (ox * wx + oy * wy + oz * wz) + weight * (gx * wx + gy * wy + gz * wz));
   s->elastic = R(0.5) * kr * (s->x * s->x + s->y * s->y + s->z * s->z);
   s->friction = work - (s->elastic - R(0.5) * kr_before * length2);
   s->damping = -c->dt * ((s->mx + gx) * wx + (s->my + gy) * wy + (s->mz + gz) * wz);

@@ -11,12 +11,14 @@
 #define CALX_ROLLING_EPSD 2
 #define CALX_ROLLING_EPSD2 3
 #define CALX_ROLLING_SDS 4
+#define CALX_ROLLING_CDT 5
 
 /* Row of the instance's parameter table. */
 #define CALX_ROLLING_OPTION                                                                                      \
-  {"rolling", "none|a|epsd|epsd2|sds",                                                                           \
-   "rolling resistance: a constant torque, epsd spring and dashpot (type C), epsd2 spring k_t R^2, sds given",    \
-   0.0, 4.0, 0.0, CALX_FIELD_CHOICE, 0},
+  {"rolling", "none|a|epsd|epsd2|sds|cdt",                                                                       \
+   "rolling resistance: a constant torque, epsd spring and dashpot (type C), epsd2 spring k_t R^2, sds given, "   \
+   "cdt constant torque shared with twisting (LIGGGHTS)",                                                         \
+   0.0, 5.0, 0.0, CALX_FIELD_CHOICE, 0},
 
 /* Rows of the table of given values, in the order calx_rolling_derive reads them. */
 #define CALX_ROLLING_GIVEN                                                                                        \
@@ -36,7 +38,7 @@
     (pair).roll_k = (model) == CALX_ROLLING_SDS ? (given)[2] : 0.0;                                     \
     (pair).roll_c = (model) == CALX_ROLLING_SDS ? (given)[3] : 0.0;                                     \
     (pair).roll_eta = (model) == CALX_ROLLING_EPSD ? (given)[1] : 0.0;                                  \
-    (pair).roll_type_a = (model) == CALX_ROLLING_A ? 1.0 : 0.0;                                         \
+    (pair).roll_type_a = (model) == CALX_ROLLING_A ? 1.0 : (model) == CALX_ROLLING_CDT ? 2.0 : 0.0;     \
   } while (0)
 
 /* Stiffness of the rolling spring over R*^2, N/m, where the contact has kn and kt. */
