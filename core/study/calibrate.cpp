@@ -59,8 +59,9 @@ class Calibrator {
     for (std::size_t w = 0; w < plan.size(); ++w) {
       if (plan[w] == 0) continue;
       const bool reduced = w == 0 && has_reduced_;
-      say("wave " + std::to_string(w + 1) + ": " + std::to_string(plan[w]) + " places of the parameters" +
-          (reduced ? ", reduced cases" : ""));
+      stage_ = "wave " + std::to_string(w + 1) + (reduced ? " (reduced cases)" : "");
+      say(stage_ + ": " + std::to_string(plan[w]) + " places of the parameters, budget " +
+          std::to_string(study_.budget) + " runs in all");
       const std::size_t before = out_.runs.size();
       run_places(w == 0 ? latin_hypercube(plan[0], static_cast<std::size_t>(d_), study_.seed) : new_places(plan[w]),
                  reduced);
@@ -135,7 +136,7 @@ class Calibrator {
       StudyProgress all = p;
       all.done += before;
       all.total = std::max(study_.budget, before + p.total);
-      all.text = "wave " + std::to_string(out_.waves.size() + 1) + ": " + p.text;
+      all.text = stage_ + ", " + std::to_string(before) + " runs before it: " + p.text;
       sink_.progress(all);
     };
     const std::vector<RunResult> results = executor_.run(requests, inner);
@@ -463,7 +464,8 @@ class Calibrator {
 
   /// The cases themselves at the posterior mean, with seeds that no emulator has seen.
   void confirm() {
-    say("confirmation: runs at the posterior mean");
+    stage_ = "confirmation at the posterior mean";
+    say(stage_);
     Eigen::MatrixXd place(1, d_);
     for (Eigen::Index k = 0; k < d_; ++k) {
       const StudyParameter& p = study_.parameters[static_cast<std::size_t>(k)];
@@ -504,6 +506,7 @@ class Calibrator {
   const Eigen::Index d_;
   std::vector<const StudyCase*> cases_;  // those that observables ask for
   bool has_reduced_ = false;
+  std::string stage_;  // for progress
   UnitBox box_;
   std::vector<std::unique_ptr<PlaceRuns>> places_;
   std::vector<std::shared_ptr<const Surrogate>> surrogates_;
