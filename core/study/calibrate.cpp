@@ -40,6 +40,10 @@ double quantile(std::vector<double> v, double share) {
   return v[k] + (at - static_cast<double>(k)) * (v[next] - v[k]);
 }
 
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
 class Calibrator {
@@ -91,10 +95,9 @@ class Calibrator {
     const std::size_t wanted = (has_reduced_ ? 2 : 1) * least + 1;
     if (places < wanted)
       throw Error(Fault::settings, study_.file + " /budget/runs: " + std::to_string(study_.budget) +
-                                       " runs are too few; " + std::to_string(cases_.size()) +
-                                       (cases_.size() == 1 ? " case with " : " cases with ") +
-                                       std::to_string(study_.seeds) + " seeds at " + std::to_string(wanted) +
-                                       " places need " + std::to_string(each * wanted));
+                                       " runs are too few; " + counted(cases_.size(), "case") + " with " +
+                                       counted(study_.seeds, "seed") + " at " + std::to_string(wanted) +
+                                       " places needs " + std::to_string(each * wanted));
     const std::size_t all = places - 1, first = std::max(least, all / 2), left = all - std::min(first, all);
     const std::size_t second = has_reduced_ ? std::max(least, (3 * left + 4) / 5) : (3 * left + 4) / 5;
     return {std::min(first, all), std::min(second, left), left - std::min(second, left)};
