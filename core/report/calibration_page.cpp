@@ -163,7 +163,7 @@ class CalibrationPage {
     std::vector<std::vector<std::string>> rows = {
         {"Observable", "Kind", "Use", "Measured", "Predicted", "Runs at the mean", "z"}};
     for (const Json& o : c_["observables"]) {
-      if (!o["x"].empty()) {
+      if (o["x"].size() > 1) {
         charts += curve(o);
         continue;
       }

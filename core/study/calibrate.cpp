@@ -40,6 +40,10 @@ double quantile(std::vector<double> v, double share) {
   return v[k] + (at - static_cast<double>(k)) * (v[next] - v[k]);
 }
 
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 std::vector<double> list_of(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
 class Calibrator {
@@ -59,8 +63,9 @@ class Calibrator {
     for (std::size_t w = 0; w < plan.size(); ++w) {
       if (plan[w] == 0) continue;
       const bool reduced = w == 0 && has_reduced_;
-      say("wave " + std::to_string(w + 1) + ": " + std::to_string(plan[w]) + " places of the parameters" +
-          (reduced ? ", reduced cases" : ""));
+      stage_ = "wave " + std::to_string(w + 1) + (reduced ? " (reduced cases)" : "");
+      say(stage_ + ": " + std::to_string(plan[w]) + " places of the parameters, budget " +
+          std::to_string(study_.budget) + " runs in all");
       const std::size_t before = out_.runs.size();
       run_places(w == 0 ? latin_hypercube(plan[0], static_cast<std::size_t>(d_), study_.seed) : new_places(plan[w]),
                  reduced);
@@ -90,10 +95,9 @@ class Calibrator {
     const std::size_t wanted = (has_reduced_ ? 2 : 1) * least + 1;
     if (places < wanted)
       throw Error(Fault::settings, study_.file + " /budget/runs: " + std::to_string(study_.budget) +
-                                       " runs are too few; " + std::to_string(cases_.size()) +
-                                       (cases_.size() == 1 ? " case with " : " cases with ") +
-                                       std::to_string(study_.seeds) + " seeds at " + std::to_string(wanted) +
-                                       " places need " + std::to_string(each * wanted));
+                                       " runs are too few; " + counted(cases_.size(), "case") + " with " +
+                                       counted(study_.seeds, "seed") + " at " + std::to_string(wanted) +
+                                       " places needs " + std::to_string(each * wanted));
     const std::size_t all = places - 1, first = std::max(least, all / 2), left = all - std::min(first, all);
     const std::size_t second = has_reduced_ ? std::max(least, (3 * left + 4) / 5) : (3 * left + 4) / 5;
     return {std::min(first, all), std::min(second, left), left - std::min(second, left)};
@@ -135,7 +139,7 @@ class Calibrator {
       StudyProgress all = p;
       all.done += before;
       all.total = std::max(study_.budget, before + p.total);
-      all.text = "wave " + std::to_string(out_.waves.size() + 1) + ": " + p.text;
+      all.text = stage_ + ", " + std::to_string(before) + " runs before it: " + p.text;
       sink_.progress(all);
     };
     const std::vector<RunResult> results = executor_.run(requests, inner);
@@ -463,7 +467,8 @@ class Calibrator {
 
   /// The cases themselves at the posterior mean, with seeds that no emulator has seen.
   void confirm() {
-    say("confirmation: runs at the posterior mean");
+    stage_ = "confirmation at the posterior mean";
+    say(stage_);
     Eigen::MatrixXd place(1, d_);
     for (Eigen::Index k = 0; k < d_; ++k) {
       const StudyParameter& p = study_.parameters[static_cast<std::size_t>(k)];
@@ -504,6 +509,7 @@ class Calibrator {
   const Eigen::Index d_;
   std::vector<const StudyCase*> cases_;  // those that observables ask for
   bool has_reduced_ = false;
+  std::string stage_;  // for progress
   UnitBox box_;
   std::vector<std::unique_ptr<PlaceRuns>> places_;
   std::vector<std::shared_ptr<const Surrogate>> surrogates_;

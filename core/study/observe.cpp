@@ -66,6 +66,11 @@ double passing(const Series& s, double x) {
     const double share = (x - s.x[k - 1]) / (s.x[k] - s.x[k - 1]);
     return s.y[k - 1] + share * (s.y[k] - s.y[k - 1]);
   }
+  // Samples are taken in the step nearest to their time, so that the last one of a run to 2 s may stand at 1.99999 s.
+  const std::size_t n = s.x.size();
+  if (n < 2) return kNone;
+  if (std::fabs(x - s.x[n - 1]) <= 0.5 * std::fabs(s.x[n - 1] - s.x[n - 2])) return s.y[n - 1];
+  if (std::fabs(x - s.x[0]) <= 0.5 * std::fabs(s.x[1] - s.x[0])) return s.y[0];
   return kNone;
 }
 

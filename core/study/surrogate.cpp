@@ -117,7 +117,7 @@ Misfit misfit(const Target& target, const Figures& figures) {
     out.log_likelihood =
         -0.5 * (out.square + static_cast<double>(m) * kLogTwoPi) - factor.matrixLLT().diagonal().array().log().sum();
   }
-  out.implausibility = normal_score(out.square, m);
+  out.implausibility = std::max(normal_score(out.square, m), 0.0);
   return out;
 }
 

@@ -25,15 +25,19 @@ inline double heavy(Random& r) {
 
 /// A heap and a hopper as functions of sliding friction f and rolling friction r: smooth, curved, not separable.
 struct StandIn {
-  static double angle(double f, double r) { return 14 + 24 * (1 - std::exp(-2.2 * f)) + 30 * r / (0.15 + r) * std::sqrt(f); }
+  static double angle(double f, double r) {
+    return 14 + 24 * (1 - std::exp(-2.2 * f)) + 30 * r / (0.15 + r) * std::sqrt(f);
+  }
   static double density(double f, double r) { return 1500 * (1 - 0.10 * std::pow(f, 0.6) - 0.22 * r); }
+  static double height(double f, double r) { return 20 + 12 * f - 3 * f * f + 20 * r; }
   /// Mass out of the hopper at time t, g.
   static double discharged(double f, double r, double t) {
     const double rate = 180 / (1 + 0.5 * f + 1.2 * r * f);
     return 500 * (1 - std::exp(-rate * t / 500));
   }
 };
-constexpr double kAngleScatter = 0.6, kDensityScatter = 4, kMassScatter = 3;  // deg, kg/m^3, g
+constexpr double kAngleScatter = 0.6, kDensityScatter = 4, kMassScatter = 3,
+                 kHeightScatter = 0.4;  // deg, kg/m^3, g, mm
 
 class StandInExecutor : public Executor {
  public:
@@ -65,7 +69,8 @@ class StandInExecutor : public Executor {
     std::ofstream(folder + "/summary.json")
         << R"({"sensors": {"heap": {"last": {"angle_deg": )"
         << format_number(off * (StandIn::angle(f, r) + kAngleScatter * heavy(random))) << R"(, "density_kg_m3": )"
-        << format_number(off * (StandIn::density(f, r) + kDensityScatter * heavy(random))) << "}}}}\n";
+        << format_number(off * (StandIn::density(f, r) + kDensityScatter * heavy(random))) << R"(, "height_mm": )"
+        << format_number(off * (StandIn::height(f, r) + kHeightScatter * heavy(random))) << "}}}}\n";
     std::ofstream series(folder + "/series/mass out.csv");
     series << "time_s,mass_kg\n";
     const double shared = kMassScatter * heavy(random);
@@ -105,8 +110,9 @@ inline StudyObservable stand_in_scalar(const std::string& name, const std::strin
   return o;
 }
 
-/// Angle and discharge to fit, density held out, measured five times at the truth (f, r) by a lab with that seed.
-inline Study stand_in_study(double f, double r, std::uint64_t lab, std::size_t budget = 45) {
+/// Angle, density and discharge to fit, height held out, measured five times at the truth (f, r) by a lab with that
+/// seed. bias: of the angle, deg, that the lab does not know of.
+inline Study stand_in_study(double f, double r, std::uint64_t lab, double bias = 0) {
   Random random(lab, 77);
   const auto mean_of = [&](double value, double sd) {
     double sum = 0;
@@ -116,13 +122,12 @@ inline Study stand_in_study(double f, double r, std::uint64_t lab, std::size_t b
   Study study;
   study.title = "stand-in";
   study.seed = lab;
-  study.budget = budget;
+  study.budget = 45;
   study.cases.push_back({"rig", "/cases/rig", "rig.json", {}, "", 0.1});
   study.parameters = {stand_in_parameter("friction", "/f", 0.1, 0.9), stand_in_parameter("rolling", "/r", 0, 0.4)};
-  study.observables.push_back(
-      stand_in_scalar("angle", "angle_deg", mean_of(StandIn::angle(f, r), 0.8), 0.8, 5));
-  study.observables.push_back(
-      stand_in_scalar("density", "density_kg_m3", mean_of(StandIn::density(f, r), 5), 5, 5));
+  study.observables.push_back(stand_in_scalar("angle", "angle_deg", bias + mean_of(StandIn::angle(f, r), 0.8), 0.8, 5));
+  study.observables.push_back(stand_in_scalar("density", "density_kg_m3", mean_of(StandIn::density(f, r), 5), 5, 5));
+  study.observables.push_back(stand_in_scalar("height", "height_mm", mean_of(StandIn::height(f, r), 0.5), 0.5, 5));
   study.observables.back().use = StudyObservable::Use::hold_out;
   StudyObservable curve = study.observables[0];
   curve.name = "discharge";
@@ -134,10 +139,10 @@ inline Study stand_in_study(double f, double r, std::uint64_t lab, std::size_t b
   curve.measured = {};
   curve.measured.repeats = 5;
   curve.measured.correlation = 0.5;
-  const double bias = mean_of(0, 3);
+  const double shared = mean_of(0, 3);
   for (const double t : {1.0, 2.0, 3.0, 4.0, 5.0}) {
     curve.measured.x.push_back(t);
-    curve.measured.y.push_back(bias + mean_of(StandIn::discharged(f, r, t), 2));
+    curve.measured.y.push_back(shared + mean_of(StandIn::discharged(f, r, t), 2));
     curve.measured.sd.push_back(4);
   }
   curve.tolerance = 1.4;
