@@ -31,6 +31,18 @@ TEST_CASE("means over whole windows, the peak, and what changed last") {
   CHECK(std::isnan(w.haste()));
 }
 
+TEST_CASE("windows under less than half of the last stress do not count as haste") {
+  Windows w(0.001);
+  w.add({10, 0, 0, 5}, 0.001);
+  w.add({60, 0, 0, 2}, 0.001);
+  Windows again(0.001);
+  again.set_numbers(w.numbers());
+  for (Windows* one : {&w, &again}) {
+    one->add({100, 0, 0, 1}, 0.001);
+    CHECK(one->haste() == doctest::Approx(2 / std::sqrt(60.0)));
+  }
+}
+
 TEST_CASE("a step shorter than a window gives its own mean") {
   Windows w(1);
   w.add({10, 4, 0, 0}, 0.001);
