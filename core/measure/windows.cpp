@@ -43,7 +43,11 @@ void Windows::close() {
 }
 
 StressState Windows::last() const { return count_ > 0 ? last_ : scaled(sum_, steps_ > 0 ? 1 / steps_ : 0); }
-double Windows::shear_drift() const { return count_ > 1 ? change(before_.shear, last_.shear) : nan; }
+double Windows::ratio_drift() const {
+  if (count_ < 2 || !(before_.normal > 0) || !(last_.normal > 0)) return nan;
+  return change(before_.shear / before_.normal, last_.shear / last_.normal);
+}
+
 double Windows::height_drift() const { return count_ > 1 ? change(before_.height, last_.height) : nan; }
 
 double Windows::haste() const {

@@ -16,7 +16,7 @@ TEST_CASE("means over whole windows, the peak, and what changed last") {
   CHECK(w.last().shear == doctest::Approx(2));
   CHECK(w.peak().shear == doctest::Approx(3));
   CHECK(w.peak().height == doctest::Approx(0.3));
-  CHECK(w.shear_drift() == doctest::Approx(0.5));
+  CHECK(w.ratio_drift() == doctest::Approx(0.5));
   CHECK(w.height_drift() == doctest::Approx(0.5));
   CHECK(w.haste() == doctest::Approx(0.06));
   Windows again(0.004);
@@ -27,7 +27,7 @@ TEST_CASE("means over whole windows, the peak, and what changed last") {
   CHECK(again.last().shear == w.last().shear);
   w.begin();
   CHECK(w.last().shear == 0);
-  CHECK(std::isnan(w.shear_drift()));
+  CHECK(std::isnan(w.ratio_drift()));
   CHECK(std::isnan(w.haste()));
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("a step shorter than a window gives its own mean") {
   w.add({20, 6, 0, 0}, 0.001);
   CHECK(w.last().normal == doctest::Approx(15));
   CHECK(w.peak().shear == doctest::Approx(5));
-  CHECK(std::isnan(w.shear_drift()));
+  CHECK(std::isnan(w.ratio_drift()));
 }
 
 TEST_CASE("steps of a motion are counted once each") {
