@@ -181,6 +181,19 @@ TEST_CASE("a checkpoint with a spoilt servo state is refused, and says whose") {
   CHECK_THROWS_WITH_AS(sim.load(state), doctest::Contains("motion \"press\" does not take back the state"), Error);
 }
 
+TEST_CASE("a lid that nothing holds ends the run, and says which and where") {
+  Simulation sim(with_given(column(linear_contacts, R"("control": "force", "damping": 10, "speed_limit": 1,
+                                   "steps": [2], "travel_limit": 0.0005)",
+                                   0.05),
+                            "ball", {{{0, 0, 0.001}, {}, {}, {}}}),
+                 test_options());
+  CHECK_THROWS_WITH_AS(
+      advance(sim, 3000),
+      doctest::Contains("test.json /motions/press: calx.servo-stress 1.0.0: travel_limit: the part has "
+                        "gone 0.0005 m"),
+      Error);
+}
+
 // A plate of four spheres cannot roll, so on the moving coupon every contact slides: shear = friction * normal, to
 // rounding, whatever the lid and the wall that holds the plate add to the normal load.
 TEST_CASE("wall friction of grains that only slide is the friction coefficient") {
