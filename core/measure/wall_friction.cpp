@@ -3,10 +3,12 @@
 // Keys: those of stress_probe.hpp; "motion" whose steps are the loads; "window" (s, 0.1): the value of a step is the
 // mean over its last whole window, and its drift the relative change of shear over normal stress from the window
 // before; "steady" (0.02): a step counts for the line when its drift is below this; "first" (1): steps before it are
-// for running in and give no row. Columns: step_1, normal_Pa, shear_Pa, ratio_1, angle_deg = arctan(ratio), drift_1,
-// steady_1 (1 or 0), inertial_1 (largest of the step, see StressProbe), and of the line shear = adhesion + normal
-// tan(phi_w) through all points so far phi_w_deg, phi_w_se_deg, adhesion_Pa, adhesion_se_Pa with standard errors from
-// the scatter about it. A row for each step; rows between two steps repeat the last one.
+// for running in and give no row.
+//
+// Columns: step_1, normal_Pa, shear_Pa, ratio_1, angle_deg = arctan(ratio), drift_1, steady_1 (1 or 0), inertial_1
+// (largest of the step, see StressProbe), and of the line shear = adhesion + normal tan(phi_w) through all points so
+// far phi_w_deg, phi_w_se_deg, adhesion_Pa, adhesion_se_Pa with standard errors from the scatter about it. A row for
+// each step; rows between two steps repeat the last one.
 #include <cmath>
 #include <limits>
 

@@ -7,10 +7,12 @@
 // its steady state when shear over normal stress changes by less than this from the window before to the last;
 // "prorate" (true): each yield point is multiplied by mean pre-shear stress over its own pre-shear stress, which takes
 // out how well each was made. Pre-shears whose normal stresses differ by less than 20 % belong to one locus; a further
-// level begins the next one. Columns: step_1, role_1 (1 pre-shear, 2 shear, 0 rest), level_1, normal_Pa, shear_Pa (as
-// measured), prorated_Pa, drift_1, steady_1 (of the latest pre-shear), inertial_1, and of the level's locus so far:
-// phi_deg, phi_se_deg, cohesion_Pa, cohesion_se_Pa, strength_Pa, sigma1_Pa, sigma3_Pa, ffc_1, effective_deg, steady_deg
-// (see locus.hpp). A row for each step; rows between two steps repeat the last one.
+// level begins the next one.
+//
+// Columns: step_1, role_1 (1 pre-shear, 2 shear, 0 rest), level_1, normal_Pa, shear_Pa (as measured), prorated_Pa,
+// drift_1, steady_1 (of the latest pre-shear), inertial_1, and of the level's locus so far: phi_deg, phi_se_deg,
+// cohesion_Pa, cohesion_se_Pa, strength_Pa, sigma1_Pa, sigma3_Pa, ffc_1, effective_deg, steady_deg (see locus.hpp). A
+// row for each step; rows between two steps repeat the last one.
 #include <cmath>
 #include <limits>
 
