@@ -6,11 +6,12 @@
 // the floor and follows the cell; the height is the mean of the upper envelope of the spheres over the region (cells of
 // a 48th of its width), bare floor counting as 0. The envelope lies above the level a ruler would find by a part of a
 // particle. "area" (m^2) is that of the bed, "window" (s, 0.02) as in wall-friction: stress and height are means over
-// the last whole window of the step. "region" says which particles count; without, all. Columns: step_1, stress_Pa (NaN
-// without lid), height_m, volume_m3, density_kg_m3, solid_fraction_1, cps_percent = 100 (V0 - V) / V0 from the first
-// step, drift_1 (relative change of height from the window before to the last), speed_m_s of the lid then, inertial_1 =
-// largest of rate * d * sqrt(density / stress) of the step's windows, rate = speed / height. A row for each step; rows
-// between two steps repeat the last one.
+// the last whole window of the step. "region" says which particles count; without, all.
+//
+// Columns: step_1, stress_Pa (NaN without lid), height_m, volume_m3, density_kg_m3, solid_fraction_1, cps_percent = 100
+// (V0 - V) / V0 from the first step, drift_1 (relative change of height from the window before to the last), speed_m_s
+// of the lid then, inertial_1 = largest of rate * d * sqrt(density / stress) of the step's windows, rate = speed /
+// height. A row for each step; rows between two steps repeat the last one.
 #include <algorithm>
 #include <cmath>
 #include <limits>

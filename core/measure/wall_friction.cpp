@@ -1,9 +1,11 @@
 // wall_friction.cpp: kind "wall-friction": a point of the wall yield locus for each step of "motion", and its line.
 //
 // Keys: those of stress_probe.hpp; "motion" whose steps are the loads; "window" (s, 0.1): the value of a step is the
-// mean over its last whole window, and its drift the relative change of shear from the window before; "steady" (0.02):
-// a step counts for the line when its drift is below this; "first" (1): steps before it are for running in and give no
-// row. Columns: step_1, normal_Pa, shear_Pa, ratio_1, angle_deg = arctan(ratio), drift_1, steady_1 (1 or 0), inertial_1
+// mean over its last whole window, and its drift the relative change of shear over normal stress from the window
+// before; "steady" (0.02): a step counts for the line when its drift is below this; "first" (1): steps before it are
+// for running in and give no row.
+//
+// Columns: step_1, normal_Pa, shear_Pa, ratio_1, angle_deg = arctan(ratio), drift_1, steady_1 (1 or 0), inertial_1
 // (largest of the step, see StressProbe), and of the line shear = adhesion + normal tan(phi_w) through all points so
 // far phi_w_deg, phi_w_se_deg, adhesion_Pa, adhesion_se_Pa with standard errors from the scatter about it. A row for
 // each step; rows between two steps repeat the last one.
@@ -76,7 +78,7 @@ class WallFrictionSensor : public Sensor {
  private:
   void finish_step(const WorldView& world) {
     const StressState at = windows_.last();
-    const double drift = windows_.shear_drift(), ratio = at.normal > 0 ? at.shear / at.normal : nan;
+    const double drift = windows_.ratio_drift(), ratio = at.normal > 0 ? at.shear / at.normal : nan;
     const bool steady = drift < steady_;
     if (steady) points_.push_back({at.normal, at.shear});
     const Locus line = fit_locus(points_);

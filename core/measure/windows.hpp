@@ -29,12 +29,13 @@ class Windows {
   StressState last() const;
   /// The window with the largest shear; last() where the step holds none.
   StressState peak() const { return count_ > 0 ? peak_ : last(); }
-  /// Relative change from the last window but one to the last, of shear, and of height; NaN with fewer than two.
-  double shear_drift() const;
+  /// Relative change from the last window but one to the last, of shear over normal stress (a load that has just
+  /// changed must not look like friction that does), and of height; NaN with fewer than two.
+  double ratio_drift() const;
   double height_drift() const;
-  /// Largest speed / sqrt(normal) of the windows, m/s / sqrt(Pa), those without compression left out: what inertial
-  /// numbers grow with. NaN without any.
-  double haste() const { return haste_; }
+  /// Largest speed / sqrt(normal) of the windows, m/s / sqrt(Pa): what inertial numbers grow with. Windows with less
+  /// than half of the last one's normal stress are left out: a lid on its way down is no test yet. NaN without any.
+  double haste() const;
 
   std::vector<double> numbers() const;
   void set_numbers(const std::vector<double>& numbers);
@@ -43,7 +44,8 @@ class Windows {
   void close();
   double length_;
   StressState sum_, last_, before_, peak_;
-  double haste_ = 0, steps_ = 0, time_ = 0, count_ = 0;
+  std::vector<std::pair<double, double>> paces_;  // speed and normal stress of each window
+  double steps_ = 0, time_ = 0, count_ = 0;
 };
 
 /// Counts the completed steps of a motion.

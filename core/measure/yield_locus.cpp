@@ -4,10 +4,12 @@
 // Keys: those of stress_probe.hpp; "motion" whose steps are the parts of the test; "pattern": what its steps are, over
 // and over (["pre-shear", "rest", "shear"]); "window" (s, 0.05): the value of a pre-shear is the mean over its last
 // whole window, that of a shear step the window with the largest shear stress; "steady" (0.05): a pre-shear has reached
-// its steady state when shear changes by less than this from the window before to the last; "prorate" (true): each
-// yield point is multiplied by mean pre-shear stress over its own pre-shear stress, which takes out how well each was
-// made. Pre-shears whose normal stresses differ by less than 5 % belong to one locus; a further level begins the next
-// one. Columns: step_1, role_1 (1 pre-shear, 2 shear, 0 rest), level_1, normal_Pa, shear_Pa (as measured), prorated_Pa,
+// its steady state when shear over normal stress changes by less than this from the window before to the last;
+// "prorate" (true): each yield point is multiplied by mean pre-shear stress over its own pre-shear stress, which takes
+// out how well each was made. Pre-shears whose normal stresses differ by less than 20 % belong to one locus; a further
+// level begins the next one.
+//
+// Columns: step_1, role_1 (1 pre-shear, 2 shear, 0 rest), level_1, normal_Pa, shear_Pa (as measured), prorated_Pa,
 // drift_1, steady_1 (of the latest pre-shear), inertial_1, and of the level's locus so far: phi_deg, phi_se_deg,
 // cohesion_Pa, cohesion_se_Pa, strength_Pa, sigma1_Pa, sigma3_Pa, ffc_1, effective_deg, steady_deg (see locus.hpp). A
 // row for each step; rows between two steps repeat the last one.
@@ -115,8 +117,8 @@ class YieldLocusSensor : public Sensor {
   }
 
   void add_pre_shear(const StressPoint& point) {
-    drift_ = windows_.shear_drift();
-    if (pre_shears_.empty() || std::fabs(point.normal - pre_shears_[0].normal) > 0.05 * pre_shears_[0].normal) {
+    drift_ = windows_.ratio_drift();
+    if (pre_shears_.empty() || std::fabs(point.normal - pre_shears_[0].normal) > 0.2 * pre_shears_[0].normal) {
       pre_shears_.clear();
       points_.clear();
       level_ += 1;

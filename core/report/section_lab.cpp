@@ -57,11 +57,13 @@ std::string inertial_text(const StepRows& rows) {
          " the limit of " + format_number(inertial_limit) + " for quasi-static shear.";
 }
 
-std::string unsteady_text(const StepRows& rows, const char* what) {
+/// level: of a yield locus; 0: no levels.
+std::string unsteady_text(const StepRows& rows, const char* what, double level = 0) {
   std::size_t unsteady = 0, of = 0;
   for (std::size_t k = 0; k < rows.count(); ++k) {
-    const double role = rows.at("role_1", k);  // of yield loci; each drift stands beside its pre-shear and what follows
-    if (!std::isfinite(rows.at("drift_1", k)) || (std::isfinite(role) && role != 1)) continue;
+    // The drift of a pre-shear stands in the rows that follow it, too.
+    const bool counts = level == 0 || (rows.at("role_1", k) == 1 && rows.at("level_1", k) == level);
+    if (!counts) continue;
     ++of;
     unsteady += rows.at("steady_1", k) == 0;
   }
@@ -130,14 +132,14 @@ std::string compression(Page& page, const SensorSeries& s, const StepRows& rows)
   const std::size_t last = rows.count() - 1;
   density.caption = "From " + format_number(rows.at("density_kg_m3", 0), 4) + " to " +
                     format_number(rows.at("density_kg_m3", top), 4) + "\xc2\xa0kg/m<sup>3</sup> at " +
-                    format_quantity(rows.at("stress_Pa", top), "Pa", 3) + ". Mass over area times height of the cell.";
+                    format_quantity(rows.at("stress_Pa", top), "Pa", 4) + ". Mass over area times height of the cell.";
   cps.caption = "100 (V<sub>0</sub> - V) / V<sub>0</sub>, V<sub>0</sub> at the end of the first step; " +
                 format_number(rows.at("cps_percent", top), 3) + "\xc2\xa0% at " +
-                format_quantity(rows.at("stress_Pa", top), "Pa", 3);
+                format_quantity(rows.at("stress_Pa", top), "Pa", 4);
   if (last > top && rows.at("cps_percent", top) > 0)
     cps.caption += ", of which " +
                    format_number(100 * (1 - rows.at("cps_percent", last) / rows.at("cps_percent", top)), 3) +
-                   "\xc2\xa0% come back on unloading to " + format_quantity(rows.at("stress_Pa", last), "Pa", 3);
+                   "\xc2\xa0% come back on unloading to " + format_quantity(rows.at("stress_Pa", last), "Pa", 4);
   cps.caption += "." + inertial_text(rows);
   return page.chart(density) + page.chart(cps);
 }
@@ -223,11 +225,11 @@ std::string yield_locus(Page& page, const SensorSeries& s, const StepRows& rows)
       chart.series.push_back(line_through("effective yield locus", std::tan(rows.at("effective_deg", last) * pi / 180),
                                           0, 0.5e-3 * (sigma1 + sigma3), 3));
       chart.caption = "Internal friction " + plus_minus(phi, rows.at("phi_se_deg", last), "\xc2\xb0", 4) +
-                      ", cohesion " + plus_minus(cohesion, rows.at("cohesion_se_Pa", last), "Pa", 3) +
+                      ", cohesion " + plus_minus(cohesion, rows.at("cohesion_se_Pa", last), "Pa", 4) +
                       " (line with standard errors); effective angle " +
                       format_number(rows.at("effective_deg", last), 3) + "\xc2\xb0, steady flow " +
                       format_number(rows.at("steady_deg", last), 3) + "\xc2\xb0; largest principal stress " +
-                      format_quantity(sigma1, "Pa", 3) + ", unconfined strength " + format_quantity(strength, "Pa", 3) +
+                      format_quantity(sigma1, "Pa", 4) + ", unconfined strength " + format_quantity(strength, "Pa", 4) +
                       (strength > 0 ? ", ff<sub>c</sub> " + format_number(rows.at("ffc_1", last), 3)
                                     : ": not above 0, a powder without cohesion") +
                       ". ";
@@ -235,7 +237,7 @@ std::string yield_locus(Page& page, const SensorSeries& s, const StepRows& rows)
     } else {
       chart.caption = "No locus yet: it needs two yield points at different stresses. ";
     }
-    chart.caption += "Both axes have the same scale." + inertial_text(rows) + unsteady_text(rows, "pre-shears");
+    chart.caption += "Both axes have the same scale." + inertial_text(rows) + unsteady_text(rows, "pre-shears", level);
     out += page.chart(chart);
   }
   if (function.x.empty()) return out;
@@ -249,8 +251,9 @@ std::string yield_locus(Page& page, const SensorSeries& s, const StepRows& rows)
   for (const double ffc : {1.0, 2.0, 4.0, 10.0})
     chart.series.push_back(line_through("ff_c = " + format_number(ffc), 1 / ffc, 0, most, colour++));
   chart.caption =
-      "One point for each level of pre-shear. Below the line ff<sub>c</sub> = 10 a powder flows freely, above 4 "
-      "easily, above 2 it is cohesive (Jenike's classes).";
+      "One point for each level of pre-shear. ff<sub>c</sub> = stress / strength: above 10 a powder flows freely, from "
+      "4 "
+      "easily, from 2 it is cohesive, below very cohesive (Jenike's classes).";
   return out + page.chart(chart);
 }
 

@@ -91,7 +91,7 @@ void Engine::OnDevice::send_table(const StepTable& table, std::size_t first, std
                         engine_.parts[k].material});
     }
   device_->write(m.parts, states.data(), states.size() * sizeof(PartState));
-  if (!engine_.forces.empty()) device_->write(m.times, &table.time[first], count * sizeof(double));
+  device_->write(m.times, &table.time[first], count * sizeof(double));
 }
 
 void Engine::OnDevice::send_particles() {

@@ -69,6 +69,19 @@ TEST_CASE("a point for each load, a line through the steady ones, rows only when
   CHECK(sensor->sample(world) == row);  // between two steps the last one again
 }
 
+// Load and shear fall together within the windows compared: the friction is steady all the same.
+TEST_CASE("a load that has just changed is no drift of friction") {
+  FakeWorld world = coupon();
+  const auto sensor = world.sensor(json, "wall-friction");
+  for (int k = 0; k < 80; ++k) {
+    const double normal = k < 65 ? 8000 : 5000;
+    world.loads[0].force = {-0.5 * 0.4 * normal, 0, -0.5 * normal};
+    world.cycles["lid"] = k < 39 ? 0.5 : k < 79 ? 1 : 2;
+    sensor->step(world);
+  }
+  CHECK(sensor->sample(world)[5] < 1e-12);
+}
+
 TEST_CASE("without a motion there are no steps") {
   CHECK(coupon().error_of(R"({"parts": ["coupon"], "area": 1})", "wall-friction").find("needs \"motion\"") !=
         std::string::npos);

@@ -16,7 +16,7 @@ TEST_CASE("means over whole windows, the peak, and what changed last") {
   CHECK(w.last().shear == doctest::Approx(2));
   CHECK(w.peak().shear == doctest::Approx(3));
   CHECK(w.peak().height == doctest::Approx(0.3));
-  CHECK(w.shear_drift() == doctest::Approx(0.5));
+  CHECK(w.ratio_drift() == doctest::Approx(0.5));
   CHECK(w.height_drift() == doctest::Approx(0.5));
   CHECK(w.haste() == doctest::Approx(0.06));
   Windows again(0.004);
@@ -27,8 +27,20 @@ TEST_CASE("means over whole windows, the peak, and what changed last") {
   CHECK(again.last().shear == w.last().shear);
   w.begin();
   CHECK(w.last().shear == 0);
-  CHECK(std::isnan(w.shear_drift()));
+  CHECK(std::isnan(w.ratio_drift()));
   CHECK(std::isnan(w.haste()));
+}
+
+TEST_CASE("windows under less than half of the last stress do not count as haste") {
+  Windows w(0.001);
+  w.add({10, 0, 0, 5}, 0.001);
+  w.add({60, 0, 0, 2}, 0.001);
+  Windows again(0.001);
+  again.set_numbers(w.numbers());
+  for (Windows* one : {&w, &again}) {
+    one->add({100, 0, 0, 1}, 0.001);
+    CHECK(one->haste() == doctest::Approx(2 / std::sqrt(60.0)));
+  }
 }
 
 TEST_CASE("a step shorter than a window gives its own mean") {
@@ -37,7 +49,7 @@ TEST_CASE("a step shorter than a window gives its own mean") {
   w.add({20, 6, 0, 0}, 0.001);
   CHECK(w.last().normal == doctest::Approx(15));
   CHECK(w.peak().shear == doctest::Approx(5));
-  CHECK(std::isnan(w.shear_drift()));
+  CHECK(std::isnan(w.ratio_drift()));
 }
 
 TEST_CASE("steps of a motion are counted once each") {

@@ -81,7 +81,7 @@ TEST_CASE("another stress of pre-shear begins another locus") {
                                    "yield-locus");
   leg(world, *sensor, 1, 8000, 5000, 5000);
   leg(world, *sensor, 2, 6000, 4000, 3000);
-  leg(world, *sensor, 3, 8100, 5000, 5000);
+  leg(world, *sensor, 3, 9500, 5000, 5000);
   auto row = leg(world, *sensor, 4, 4000, 3000, 3000);
   CHECK(row["level_1"] == 1);
   CHECK(row["phi_deg"] == doctest::Approx(std::atan(0.5) * 180 / FakeWorld::pi));

@@ -26,7 +26,7 @@ CaseFile pressed_bed(const std::string& integrator) {
   c.parts = R"([{"name": "box", "geometry": "calx.box", "material": "sand",
                  "parameters": {"min": [0, 0, 0], "max": [0.033, 0.033, 0.2]}},
                 {"name": "lid", "geometry": "calx.plane", "material": "sand", "motion": "press",
-                 "parameters": {"point": [0.0165, 0.0165, 0.0294], "half_u": 0.0163, "half_v": 0.0163}}])";
+                 "parameters": {"point": [0.0165, 0.0165, 0.0305], "half_u": 0.0163, "half_v": 0.0163}}])";
   c.more = R"("motions": {
     "press": {"plugin": "calx.servo-stress", "carried_by": "stem", "parameters": {"axis": [0, 0, -1], "area": 0.0011,
       "damping": 40, "speed_limit": 0.5, "steps": [15000, 5000], "ends": "time", "step_time": 0.0011}},
@@ -107,9 +107,9 @@ TEST_CASE("a column of spheres gives way by the sum of its Hertz overlaps at eve
                             "ball", spheres),
                  test_options());
   for (const double stress : {1000.0, 4000.0, 500.0}) {
-    const double done = std::floor(sim.world().cycles_of("press"));
+    const double done = std::floor(sim.world().cycles_of("press")), began = sim.time();
     while (std::floor(sim.world().cycles_of("press")) == done) sim.step();
-    CHECK(sim.time() < 0.1);  // settled, not timed out
+    CHECK(sim.time() - began < 0.25);  // settled, not timed out after 0.5 s
     const double force = stress * 1e-4, way = (n - 1) * overlap(force, R / 2) + 2 * overlap(force, R);
     // The load is within the tolerance of 1e-4, and the way goes with its power 2/3; what the averaged speed of 1e-6
     // m/s may add within the hold is 1e-9 m, 1e-4 of the smallest way.
@@ -123,9 +123,13 @@ TEST_CASE("a pressed and sheared bed: one digest for every number of threads and
   for (const char* integrator : {"euler", "verlet"}) {
     const CaseFile file = pressed_bed(integrator);
     Simulation one(file, test_options(1));
-    advance(one, 260);
+    double largest = 0;
+    for (int k = 0; k < 260; ++k) {
+      one.step();
+      largest = std::max(largest, one.world().part_load(1).force.z);
+    }
     // The scene must mean something: the lid is loaded and has moved both ways, steps have ended.
-    CHECK(one.world().part_load(1).force.z > 2);
+    CHECK(largest > 1);
     CHECK(one.world().part_pose(1).shift.z < -1e-5);
     CHECK(one.world().part_pose(1).shift.x > 1e-5);
     CHECK(one.world().cycles_of("press") == 2);
@@ -177,6 +181,19 @@ TEST_CASE("a checkpoint with a spoilt servo state is refused, and says whose") {
   CHECK_THROWS_WITH_AS(sim.load(state), doctest::Contains("motion \"press\" does not take back the state"), Error);
 }
 
+TEST_CASE("a lid that nothing holds ends the run, and says which and where") {
+  Simulation sim(with_given(column(linear_contacts, R"("control": "force", "damping": 10, "speed_limit": 1,
+                                   "steps": [2], "travel_limit": 0.0005)",
+                                   0.05),
+                            "ball", {{{0, 0, 0.001}, {}, {}, {}}}),
+                 test_options());
+  CHECK_THROWS_WITH_AS(
+      advance(sim, 3000),
+      doctest::Contains("test.json /motions/press: calx.servo-stress 1.0.0: travel_limit: the part has "
+                        "gone 0.0005 m"),
+      Error);
+}
+
 // A plate of four spheres cannot roll, so on the moving coupon every contact slides: shear = friction * normal, to
 // rounding, whatever the lid and the wall that holds the plate add to the normal load.
 TEST_CASE("wall friction of grains that only slide is the friction coefficient") {
@@ -192,14 +209,14 @@ TEST_CASE("wall friction of grains that only slide is the friction coefficient")
     c.materials = R"({"sand": {"density": 2000, "young": 1e7, "poisson": 0.25},
                       "ice": {"density": 2000, "young": 1e7, "poisson": 0.25}})";
     c.shapes =
-        R"({"plate": {"spheres": [{"at": [0.002, 0, 0], "radius": 0.001}, {"at": [-0.002, 0, 0], "radius": 0.001},
-                                         {"at": [0, 0.002, 0], "radius": 0.001}, {"at": [0, -0.002, 0], "radius": 0.001}]}})";
+        R"({"plate": {"spheres": [{"at": [0.0009, 0, 0], "radius": 0.001}, {"at": [-0.0009, 0, 0], "radius": 0.001},
+                                         {"at": [0, 0.0009, 0], "radius": 0.001}, {"at": [0, -0.0009, 0], "radius": 0.001}]}})";
     c.parts = R"([{"name": "coupon", "geometry": "calx.plane", "material": "sand", "motion": "slide",
                    "parameters": {"half_u": 0.05, "half_v": 0.05}},
       {"name": "lid", "geometry": "calx.plane", "material": "ice", "motion": "press",
        "parameters": {"point": [0, 0, 0.002], "half_u": 0.05, "half_v": 0.05}},
       {"name": "ring", "geometry": "calx.box", "material": "ice",
-       "parameters": {"min": [-0.0031, -0.0031, 0.0001], "max": [0.0031, 0.0031, 0.03], "open_bottom": "yes"}}])";
+       "parameters": {"min": [-0.00195, -0.00195, 0.0001], "max": [0.00195, 0.00195, 0.03], "open_bottom": "yes"}}])";
     c.more.insert(
         c.more.size() - 1,
         R"(, "slide": {"plugin": "calx.travel", "parameters": {"displacement": [0.02, 0, 0], "speed": 0.05}})");
@@ -237,8 +254,8 @@ TEST_CASE("a drive feels what it carries") {
                            "parameters": {"restitution": 0.2, "friction": 0.5}}])",
                       R"("control": "force", "damping": 2, "speed_limit": 1, "steps": [1], "step_time": 0.5)", 0.002);
   c.shapes =
-      R"({"plate": {"spheres": [{"at": [0.002, 0, 0], "radius": 0.001}, {"at": [-0.001, 0.0018, 0], "radius": 0.001},
-                                       {"at": [-0.001, -0.0018, 0], "radius": 0.001}]}})";
+      R"({"plate": {"spheres": [{"at": [0.001, 0, 0], "radius": 0.001}, {"at": [-0.0005, 0.0008, 0], "radius": 0.001},
+                                       {"at": [-0.0005, -0.0008, 0], "radius": 0.001}]}})";
   c.more =
       R"("motions": {"press": {"plugin": "calx.servo-stress", "carried_by": "stem", "parameters": {"axis": [0, 0, -1],
       "control": "force", "damping": 2, "speed_limit": 1, "steps": [1], "step_time": 0.5}},
