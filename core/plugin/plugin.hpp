@@ -17,8 +17,8 @@ struct PluginManifest {
   std::string library;                       // absolute path of the shared library; empty for an effect of edits alone
   std::string path;                          // absolute path of the manifest
   std::string sha256;                        // of the library as the manifest states it; empty: not stated
-  std::shared_ptr<const EffectInfo> effect;  // what it says of itself as an effect (effects.hpp); null: it is none
   std::string refused;  // why it cannot be used (bad manifest, duplicate id, other architecture); empty: usable
+  std::shared_ptr<const EffectInfo> effect{};  // what it says of itself as an effect (effects.hpp); null: it is none
 };
 
 /// Search folders in order: given, CALX_PLUGIN_PATH (secure_getenv), $XDG_DATA_HOME/calx/plugins, beside the program
@@ -68,6 +68,10 @@ class PluginRegistry {
   explicit PluginRegistry(const std::vector<std::string>& search,
                           std::vector<std::pair<std::string, std::string>> pins = {});
   ~PluginRegistry();
+
+  /// Plugins that live in this program, before any of the same id in a folder; entry outlives the registry. name stands
+  /// in messages, as a path does for others. Throws Error(Fault::plugin) where it is refused.
+  void add(const calx_entry& entry, const std::string& name);
 
   /// Loads the library of id if needed, in the order of ABI.md section 3 (manifest, load, symbol, magic, major, sizes,
   /// init, factory, descriptors, required extensions), and returns its descriptor. pointer: JSON pointer where the case
