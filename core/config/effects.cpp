@@ -258,9 +258,10 @@ const EffectRole* EffectInfo::role(const std::string& name) const {
 
 const std::vector<std::string>& effect_observables() {
   static const std::vector<std::string> kinds = {
-      "mass-per-cycle",  "mass-after-cycles", "load-cell",    "folded-flow", "hopper-discharge",
-      "drained-angle",   "static-angle",      "pile-profile", "residue",     "bulk-density",
-      "compressibility", "wall-friction",     "fill-height",  "torque",      "shear-strength"};
+      "mass-per-cycle", "mass-after-cycles", "load-cell",     "folded-flow",  "hopper-discharge", "flow-rate",
+      "drained-angle",  "static-angle",      "dynamic-angle", "pile-profile", "residue",          "bulk-density",
+      "tapped-density", "compressibility",   "wall-friction", "shear",        "fill-height",      "torque",
+      "other"};
   return kinds;
 }
 

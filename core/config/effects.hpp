@@ -47,7 +47,7 @@ struct EffectInfo {
   const EffectRole* role(const std::string& name) const;
 };
 
-/// Kinds of observables that "touches" may hold.
+/// Kinds of observables that "touches" may hold: those of a study.
 const std::vector<std::string>& effect_observables();
 
 /// What the manifest object at `where` ("/plugins/0/effect") says; id, version, kind, summary and manifest stay empty.

@@ -14,11 +14,11 @@ namespace calx {
 /// One manifest NAME.plugin.json found in a search folder.
 struct PluginManifest {
   std::string id, kind, version, license, summary;
-  std::string library;                       // absolute path of the shared library; empty for an effect of edits alone
-  std::string path;                          // absolute path of the manifest
-  std::string sha256;                        // of the library as the manifest states it; empty: not stated
-  std::shared_ptr<const EffectInfo> effect;  // what it says of itself as an effect (effects.hpp); null: it is none
+  std::string library;  // absolute path of the shared library; empty for an effect of edits alone
+  std::string path;     // absolute path of the manifest
+  std::string sha256;   // of the library as the manifest states it; empty: not stated
   std::string refused;  // why it cannot be used (bad manifest, duplicate id, other architecture); empty: usable
+  std::shared_ptr<const EffectInfo> effect{};  // what it says of itself as an effect (effects.hpp); null: it is none
 };
 
 /// Search folders in order: given, CALX_PLUGIN_PATH (secure_getenv), $XDG_DATA_HOME/calx/plugins, beside the program

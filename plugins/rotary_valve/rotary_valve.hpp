@@ -27,7 +27,8 @@ class Rotor : public calx::shape::Shape {
 
  private:
   double position_[3], radius_, hub_, length_, half_vane_, angle_;
-  int pockets_;
+  double blocked_hub_;  // of the blocked pocket
+  int pockets_, blocked_;
 };
 
 /// calx.rotary-housing: two closed arcs, two ports with their edges, two end plates.

@@ -80,7 +80,7 @@ class ThirdPartyEffect(CalxTest):
         summary = json.loads((on / "summary.json").read_text())
         self.assertEqual(summary["provenance"]["effects"], [{"effect": "org.example.glue", "version": "1.0.0",
                                                              "on": {"powder": "glass"}, "parameters": {"pull": 3e-4}}])
-        self.assertIn('Effect org.example.glue 1.0.0 on powder "glass": pull = 0.0003 N.', summary["assumptions"])
+        self.assertIn('Effect org.example.glue 1.0.0 on powder "glass": pull = 3e-04 N.', summary["assumptions"])
         # The expanded case is a case: it gives the same bits again.
         self.runs(on / "case.json", "-o", "again", "--quiet", *self.path)
         self.assertEqual((self.dir / "again" / "series" / "energy.csv").read_text(), series[2])

@@ -77,7 +77,10 @@ class Law {
     if (used != choices.size() + values.size()) throw std::runtime_error("a name the tables lack");
     const double mi[] = {i.young, i.poisson}, mj[] = {j.young, j.poisson};
     pair_.resize(table_->pair_count);
-    status_ = table_->derive(instance_, &host_, mi, mj, given.data(), pair_.data());
+    if (table_->derive)
+      status_ = table_->derive(instance_, &host_, mi, mj, given.data(), pair_.data());
+    else
+      pair_ = given;  // the given row is the pair row
   }
   ~Law() {
     if (instance_) factory_->destroy(instance_);
