@@ -13,6 +13,7 @@
 #include "bench.hpp"
 #include "calx/abi.h"
 #include "options.hpp"
+#include "paper.hpp"
 #include "plugin/plugin.hpp"
 #include "progress.hpp"
 #include "report/report.hpp"
@@ -207,5 +208,6 @@ int main(int argc, char** argv) {
     command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
 
   calx::add_bench_command(app);
+  calx::add_paper_command(app);
   return guarded(app, run_flags.json, argc, argv);
 }
