@@ -145,9 +145,9 @@ std::vector<std::pair<std::string, std::string>> paper_overrides(const PaperForm
 }
 
 PaperRunState paper_run_state(const std::string& folder, const PaperForm& form, std::uint64_t seed) {
-  if (!fs::exists(folder + "/summary.json") || !fs::exists(folder + "/case.json"))
-    return fs::exists(folder + "/checkpoint.h5") ? PaperRunState::unfinished : PaperRunState::missing;
+  // First, so that a case that cannot run is refused before anything is computed.
   const CaseFile now = read_case(form.case_path, paper_overrides(form, seed));
+  if (!fs::exists(folder + "/summary.json") || !fs::exists(folder + "/case.json")) return PaperRunState::missing;
   if (numbers_of(read_text(folder + "/case.json")) != numbers_of(now.resolved)) return PaperRunState::outdated;
   const Json summary = Json::parse(read_text(folder + "/summary.json"), nullptr, false);
   const bool done =
@@ -195,7 +195,8 @@ PaperResult paper_result(const PaperRows& rows, const PaperRow& row, int form, s
                          const std::string& out) {
   PaperResult result;
   const PaperRun& run = paper_run(rows, row.figure.run);
-  result.exists = !run.forms[form].case_path.empty();
+  const PaperRun& other = row.figure.minus_run.empty() ? run : paper_run(rows, row.figure.minus_run);
+  result.exists = !run.forms[form].case_path.empty() && !other.forms[form].case_path.empty();
   if (!result.exists) return result;
   result.runs = finished(run, form, seeds, out, result.missing);
   if (!row.has_figure()) return result;
@@ -204,11 +205,8 @@ PaperResult paper_result(const PaperRows& rows, const PaperRow& row, int form, s
   result.pooled = result.spread.deviation;
   if (row.figure.minus_run.empty()) return result;
 
-  const PaperRun& other = paper_run(rows, row.figure.minus_run);
-  result.exists = !other.forms[form].case_path.empty();
-  std::vector<std::string>& missing = result.missing;
-  const std::vector<RunFolder> runs = finished(other, form, seeds, out, missing);
-  const Spread minus = spread_of(values_of(rows, row, form, runs, missing));
+  const std::vector<RunFolder> runs = finished(other, form, seeds, out, result.missing);
+  const Spread minus = spread_of(values_of(rows, row, form, runs, result.missing));
   const Spread plus = result.spread;
   result.spread = {};
   result.pooled = 0;
