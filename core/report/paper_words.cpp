@@ -20,6 +20,8 @@ std::string signed_number(double value, int digits) { return (value > 0 ? "+" : 
 
 }  // namespace
 
+const char* paper_form_name(int form) { return form == paper_full ? "full" : "reduced"; }
+
 std::string unit_html(const std::string& unit) {
   if (unit == "1") return "";
   std::string out;

@@ -6,6 +6,8 @@
 
 namespace calx {
 
+/// "full" or "reduced".
+const char* paper_form_name(int form);
 /// "g/cm^3" with the power raised; empty for plain numbers.
 std::string unit_html(const std::string& unit);
 /// "38 to 42 deg", "6 g", "negative", or the words; "-" for none.

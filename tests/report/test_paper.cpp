@@ -211,6 +211,7 @@ TEST_CASE("the page shows figures, contradictions, assumptions and what was not 
   const std::string empty = read(write_paper(rows, all_seeds, files.out));
   CHECK(empty.find("not run yet with seed 1, 2, 3") != std::string::npos);
   CHECK(empty.find("<i>not run</i>") != std::string::npos);
+  CHECK(empty.find("its text says overestimate") != std::string::npos);
   files.finish("overfill", 1, 0.0055);
   const std::string page = read(write_paper(rows, all_seeds, files.out));
   CHECK(page.find("5.5\xc2\xa0g") != std::string::npos);
