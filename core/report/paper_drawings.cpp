@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "base/error.hpp"
 #include "report/paper_words.hpp"
@@ -75,10 +76,13 @@ bool columns_against_each_other(const PaperPlot& plot, const RunFolder& run, Cha
   const bool is_time = plot.x == "time_s";
   const int x = is_time ? -1 : with_x->column(plot.x), y = with_y->column(plot.y);
   if (y < 0 || (x < 0 && !is_time)) return false;
+  const double begin =
+      plot.since.empty() ? -1 : value_of(run.events, plot.since, std::numeric_limits<double>::infinity());
   const std::vector<double>& values = with_y->values[static_cast<std::size_t>(y)];
   for (std::size_t k = 0, m = 0; k < values.size(); ++k) {
     while (m + 1 < with_x->time.size() && with_x->time[m + 1] <= with_y->time[k] * (1 + 1e-9)) ++m;
     if (!is_time && m >= with_x->time.size()) break;
+    if (with_y->time[k] < begin) continue;
     line.x.push_back(is_time ? with_y->time[k] : with_x->values[static_cast<std::size_t>(x)][m]);
     line.y.push_back(values[k]);
   }

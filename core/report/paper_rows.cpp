@@ -155,6 +155,7 @@ PaperPlot read_plot(const Node& node) {
       plot.x = object.need("x", "a column, \"time_s\", or give \"curve\"").text("the name of a column");
       plot.y = object.need("y", "a column").text("the name of a column");
       plot.x_sensor = object.text("x_sensor", "the name of a sensor");
+      plot.since = object.text("since", "the name of an event");
       plot.x_axis = read_axis(object, "x_axis");
       plot.y_axis = read_axis(object, "y_axis");
     }

@@ -56,6 +56,7 @@ struct PaperAxis {
 struct PaperPlot {
   std::string title, sensor, curve, x, y;  // x: a column or "time_s"
   std::string x_sensor;                    // of x; the same sensor when empty
+  std::string since;                       // event: rows before it are left out
   PaperAxis x_axis, y_axis;
   bool picture = false;  // the apparatus cut open at the end of the first run instead
 };

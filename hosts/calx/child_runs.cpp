@@ -42,18 +42,22 @@ pid_t begin(const ChildRun& run) {
   argv.push_back(nullptr);
   const int out = open(run.messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (out < 0) throw Error(Fault::files, run.messages + ": cannot be written: " + std::strerror(errno));
-  const pid_t child = fork();
+  const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const pid_t parent = getpid(), child = fork();
   if (child == 0) {
-    // So that no run goes on unseen after this process was killed.
+    // So that no run goes on unseen after this process was killed, be it before the child could ask for the signal.
     prctl(PR_SET_PDEATHSIG, SIGINT);
+    if (getppid() != parent) _exit(127);
     // Ctrl-C reaches the children through this process only, once.
     setpgid(0, 0);
+    dup2(in, 0);
     dup2(out, 1);
     dup2(out, 2);
     execv("/proc/self/exe", argv.data());
     _exit(127);
   }
   const int failed = errno;
+  close(in);
   close(out);
   if (child < 0) throw Error(Fault::files, std::string("cannot start a run: ") + std::strerror(failed));
   return child;

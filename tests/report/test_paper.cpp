@@ -50,7 +50,7 @@ const char* const residue_row = R"({"name": "Residue", "group": "Overfill", "uni
   "measured": {"value": 6, "where": "Results"}, "simulated": {"value": 5.23056, "where": "Results"},
   "claims": [{"words": "overestimation", "where": "Conclusion", "sign": "above"}],
   "calx": {"run": "overfill", "sensor": "residue", "column": "mass_kg"},
-  "plots": [{"title": "Residue", "sensor": "residue", "x": "time_s", "y": "mass_kg"}],
+  "plots": [{"title": "Residue", "since": "half", "sensor": "residue", "x": "time_s", "y": "mass_kg"}],
   "assumed": ["a recess of 6 mm"]})";
 
 struct Files {
@@ -223,6 +223,8 @@ TEST_CASE("the page shows figures, contradictions, assumptions and what was not 
   CHECK(page.find("of the case") != std::string::npos);
   CHECK(page.find("href=\"runs/overfill/reduced/seed-1/report.html\"") != std::string::npos);
   CHECK(page.find("default-src 'none'") != std::string::npos);
+  // Rows of the plot from the event on, s as ms and kg as g.
+  CHECK(page.find("\"x\":[250,500],\"y\":[1.375,5.5]") != std::string::npos);
 }
 
 TEST_CASE("a claim that its numbers bear out is no contradiction") {
