@@ -14,6 +14,7 @@
 #include "calibrate.hpp"
 #include "calx/abi.h"
 #include "options.hpp"
+#include "paper.hpp"
 #include "plugin/plugin.hpp"
 #include "progress.hpp"
 #include "report/calibration_page.hpp"
@@ -218,5 +219,6 @@ int main(int argc, char** argv) {
 
   calx::add_bench_command(app);
   calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);
+  calx::add_paper_command(app);
   return guarded(app, run_flags.json, argc, argv);
 }

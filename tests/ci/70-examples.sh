@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Every case below examples/ (a *.material.json is none) is listed in examples.txt and does what the list says: it runs to
-# its end and writes its report, or it passes calx check. The first fill is also held against first_fill.py.
+# Every case below examples/ (a *.material.json is none) is listed in examples.txt and does what the list says: it runs to its end and writes its
+# report, or it passes calx check, or its rows give a page, or it is only a part of others. The first fill is also held against first_fill.py.
 source "$(dirname "$0")/common.sh"
 list=tests/ci/examples.txt
 status=0
@@ -11,7 +11,7 @@ fail() {
 }
 
 while read -r file; do
-  grep -qE "^(run|check) $file( |$)" "$list" || fail "$file: not in $list"
+  grep -qE "^(run|check|paper|part) $file( |$)" "$list" || fail "$file: not in $list"
 done < <(find examples -name '*.json' ! -name '*.plugin.json' ! -name '*.material.json' ! -path '*.out/*')
 
 # The first plugin a case names that has no folder in plugins/, where any may be deleted; nothing when all are there.
@@ -47,7 +47,9 @@ while read -r command file options; do
         fail "$file: calx run"
       fi
       ;;
-    *) fail "$list: $command is neither run nor check" ;;
+    paper) ./calx.sh paper "$file" -o "build/examples/paper" --page-only || fail "$file: calx paper" ;;
+    part) ;; # other cases extend it
+    *) fail "$list: $command is neither run nor check, paper nor part" ;;
   esac
   echo "   $((SECONDS - start)) s"
 done <"$list"
