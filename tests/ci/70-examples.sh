@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Every case below examples/ (a *.material.json is none) is listed in examples.txt and does what the list says: it runs to its end and writes its
-# report, or it passes calx check, or its rows give a page, or it is only a part of others. The first fill is also held against first_fill.py.
+# Every case below examples/ (a *.material.json is none) is listed in examples.txt and does what the list says: it runs to
+# its end and writes its report, or it passes calx check, or its rows give a page, or it is only a part of others. The first
+# fill is also held against first_fill.py.
 source "$(dirname "$0")/common.sh"
 list=tests/ci/examples.txt
 status=0
