@@ -18,7 +18,7 @@
 
 #include "measure/height_map.hpp"
 #include "measure/kinds.hpp"
-#include "measure/windows.hpp"
+#include "measure/step_sensor.hpp"
 
 namespace calx {
 
@@ -32,50 +32,22 @@ struct CellSettings {
   Vec3 up{0, 0, 1};
 };
 
-class CellDensitySensor : public Sensor {
+const std::vector<std::string> names = {"step_1",           "stress_Pa",   "height_m", "volume_m3", "density_kg_m3",
+                                        "solid_fraction_1", "cps_percent", "drift_1",  "speed_m_s", "inertial_1"};
+
+class CellDensitySensor : public StepSensor {
  public:
   CellDensitySensor(CellSettings cell, const RegionSettings* region, double window)
-      : cell_(std::move(cell)), region_(region), count_(cell_.motion), windows_(window) {
-    row_.assign(columns().size(), nan);
-    row_[0] = 0;
-  }
-  std::vector<std::string> columns() const override {
-    return {"step_1",           "stress_Pa",   "height_m", "volume_m3", "density_kg_m3",
-            "solid_fraction_1", "cps_percent", "drift_1",  "speed_m_s", "inertial_1"};
-  }
-  bool wants_every_step() const override { return true; }
-  bool row_due() const override { return due_; }
-
-  void step(const WorldView& world) override {
-    if (!cell_.lid.empty()) windows_.add(under_lid(world), world.time_step());
-    if (!count_.ended(world)) return;
-    finish_step(world);
-    windows_.begin();
-    due_ = true;
-  }
-  std::vector<double> sample(const WorldView&) override {
-    due_ = false;
-    return row_;
-  }
-
-  void save(StateWriter& out, const std::string& prefix) const override {
-    const std::vector<double> numbers = windows_.numbers();
-    out.put(prefix + "/windows", numbers.data(), numbers.size(), "");
-    out.put(prefix + "/row", row_.data(), row_.size(), "");
-    const double rest[] = {count_.done(), due_ ? 1.0 : 0.0, first_volume_};
-    out.put(prefix + "/rest", rest, 3, "1,1,m^3");
-  }
-  void load(const StateReader& in, const std::string& prefix) override {
-    windows_.set_numbers(in.get_doubles(prefix + "/windows"));
-    row_ = in.get_doubles(prefix + "/row");
-    row_.resize(columns().size(), nan);
-    const std::vector<double> rest = in.get_doubles(prefix + "/rest");
-    count_.set_done(rest.at(0));
-    due_ = rest.at(1) != 0;
-    first_volume_ = rest.at(2);
-  }
+      : StepSensor(cell.motion, window, names.size()), cell_(std::move(cell)), region_(region) {}
+  std::vector<std::string> columns() const override { return names; }
 
  private:
+  StressState look(const WorldView& world) const override {
+    return cell_.lid.empty() ? StressState() : under_lid(world);
+  }
+  std::vector<double> numbers() const override { return {first_volume_}; }
+  void set_numbers(const std::vector<double>& n) override { first_volume_ = n.at(0); }
+
   StressState under_lid(const WorldView& world) const {
     const std::size_t lid = part_number(world, cell_.lid);
     Vec3 shift = world.part_pose(lid).shift, speed = world.part_pose(lid).velocity;
@@ -107,7 +79,7 @@ class CellDensitySensor : public Sensor {
     return cells > 0 ? sum / cells : nan;
   }
 
-  void finish_step(const WorldView& world) {
+  std::vector<double> finish_step(const WorldView& world) override {
     const Particles& particles = world.particles();
     double mass = 0, solid = 0;
     for (std::size_t p = 0; p < particles.count(); ++p) {
@@ -116,33 +88,29 @@ class CellDensitySensor : public Sensor {
       solid += particles.body[p].m / particles.density[particles.material[p]];
     }
     const bool lid = !cell_.lid.empty();
-    StressState at = windows_.last();
+    StressState at = windows().last();
     if (!lid) at.height = surface_height(world), at.normal = at.speed = nan;
     const double volume = cell_.area * at.height;
     if (std::isnan(first_volume_)) first_volume_ = volume;
     double inertial = nan;
     if (lid && particles.count() > 0)
-      inertial = windows_.haste() / at.height * 2 * particles.equal_radius(0) *
+      inertial = windows().haste() / at.height * 2 * particles.equal_radius(0) *
                  std::sqrt(particles.density[particles.material[0]]);
-    row_ = {count_.done(),
+    return {steps_done(),
             at.normal,
             at.height,
             volume,
             mass / volume,
             solid / volume,
             100 * (first_volume_ - volume) / first_volume_,
-            lid ? windows_.height_drift() : nan,
+            lid ? windows().height_drift() : nan,
             at.speed,
             inertial};
   }
 
   CellSettings cell_;
   RegionRef region_;
-  StepCount count_;
-  Windows windows_;
   double first_volume_ = nan;  // m^3, at the end of the first step
-  std::vector<double> row_;
-  bool due_ = false;
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "measure/kinds.hpp"
 #include "measure/locus.hpp"
+#include "measure/step_sensor.hpp"
 #include "measure/stress_probe.hpp"
 
 namespace calx {
@@ -23,86 +24,58 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = 180 / 3.14159265358979323846;
 
-class WallFrictionSensor : public Sensor {
+const std::vector<std::string> names = {"step_1",    "normal_Pa",    "shear_Pa",    "ratio_1",
+                                        "angle_deg", "drift_1",      "steady_1",    "inertial_1",
+                                        "phi_w_deg", "phi_w_se_deg", "adhesion_Pa", "adhesion_se_Pa"};
+
+class WallFrictionSensor : public StepSensor {
  public:
   explicit WallFrictionSensor(SensorOptions& options)
-      : probe_(options),
-        count_(options.required_motion("motion").name),
-        windows_(options.number("window", "s", 1e-9, 1e6, 0.1)),
+      : StepSensor(options.required_motion("motion").name, options.number("window", "s", 1e-9, 1e6, 0.1), names.size()),
+        probe_(options),
         steady_(options.number("steady", "1", 0, 10, 0.02)),
         first_(static_cast<double>(options.whole("first", 1, 1000000, 1))) {}
-  std::vector<std::string> columns() const override {
-    return {"step_1",   "normal_Pa",  "shear_Pa",  "ratio_1",      "angle_deg",   "drift_1",
-            "steady_1", "inertial_1", "phi_w_deg", "phi_w_se_deg", "adhesion_Pa", "adhesion_se_Pa"};
-  }
-  bool wants_every_step() const override { return true; }
-  bool row_due() const override { return due_; }
-
-  void step(const WorldView& world) override {
-    windows_.add(probe_.state(world), world.time_step());
-    if (!count_.ended(world)) return;
-    if (count_.done() >= first_) {
-      finish_step(world);
-      due_ = true;
-    }
-    windows_.begin();
-  }
-  std::vector<double> sample(const WorldView& world) override {
-    due_ = false;
-    probe_.weigh(world);
-    return row_;
-  }
-
-  void save(StateWriter& out, const std::string& prefix) const override {
-    const std::vector<double> numbers = windows_.numbers();
-    out.put(prefix + "/windows", numbers.data(), numbers.size(), "");
-    out.put(prefix + "/row", row_.data(), row_.size(), "");
-    std::vector<double> points;
-    for (const StressPoint& p : points_) points.insert(points.end(), {p.normal, p.shear});
-    out.put(prefix + "/points", points.data(), points.size(), "Pa");
-    const double rest[] = {count_.done(), due_ ? 1.0 : 0.0, probe_.below()};
-    out.put(prefix + "/rest", rest, 3, "1,1,N");
-  }
-  void load(const StateReader& in, const std::string& prefix) override {
-    windows_.set_numbers(in.get_doubles(prefix + "/windows"));
-    row_ = in.get_doubles(prefix + "/row");
-    row_.resize(columns().size(), nan);
-    const std::vector<double> points = in.get_doubles(prefix + "/points"), rest = in.get_doubles(prefix + "/rest");
-    points_.clear();
-    for (std::size_t k = 0; k + 1 < points.size(); k += 2) points_.push_back({points[k], points[k + 1]});
-    count_.set_done(rest.at(0));
-    due_ = rest.at(1) != 0;
-    probe_.set_below(rest.at(2));
-  }
+  std::vector<std::string> columns() const override { return names; }
 
  private:
-  void finish_step(const WorldView& world) {
-    const StressState at = windows_.last();
-    const double drift = windows_.ratio_drift(), ratio = at.normal > 0 ? at.shear / at.normal : nan;
+  StressState look(const WorldView& world) const override { return probe_.state(world); }
+  void refresh(const WorldView& world) override { probe_.weigh(world); }
+
+  std::vector<double> finish_step(const WorldView& world) override {
+    if (steps_done() < first_) return {};
+    const StressState at = windows().last();
+    const double drift = windows().ratio_drift(), ratio = at.normal > 0 ? at.shear / at.normal : nan;
     const bool steady = drift < steady_;
     if (steady) points_.push_back({at.normal, at.shear});
     const Locus line = fit_locus(points_);
-    row_ = {count_.done(),
+    return {steps_done(),
             at.normal,
             at.shear,
             ratio,
             std::atan(ratio) * degree,
             drift,
             steady ? 1.0 : 0.0,
-            StressProbe::inertial(world, windows_.haste()),
+            StressProbe::inertial(world, windows().haste()),
             line.angle() * degree,
             line.angle_error() * degree,
             line.intercept,
             line.intercept_error};
   }
 
+  std::vector<double> numbers() const override {
+    std::vector<double> out{probe_.below()};
+    for (const StressPoint& p : points_) out.insert(out.end(), {p.normal, p.shear});
+    return out;
+  }
+  void set_numbers(const std::vector<double>& n) override {
+    probe_.set_below(n.at(0));
+    points_.clear();
+    for (std::size_t k = 1; k + 1 < n.size(); k += 2) points_.push_back({n[k], n[k + 1]});
+  }
+
   StressProbe probe_;
-  StepCount count_;
-  Windows windows_;
   double steady_, first_;
   std::vector<StressPoint> points_;
-  std::vector<double> row_{0, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
-  bool due_ = false;
 };
 
 }  // namespace

@@ -79,12 +79,4 @@ void Windows::set_numbers(const std::vector<double>& n) {
   for (; at + 1 < n.size(); at += 2) paces_.emplace_back(n[at], n[at + 1]);
 }
 
-bool StepCount::ended(const WorldView& world) {
-  // A motion's cycle is computed from the time, so the last bits of a whole number may be missing.
-  const double done = std::floor(world.cycles_of(motion_) + 1e-9);
-  if (done <= done_) return false;
-  done_ = done;
-  return true;
-}
-
 }  // namespace calx

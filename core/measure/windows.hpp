@@ -1,12 +1,8 @@
 // windows.hpp: means over stretches of equal length of one step of a test, to tell a steady value from a peak and from
 // what still changes. Private to measure/.
 #pragma once
-#include <array>
-#include <string>
 #include <utility>
 #include <vector>
-
-#include "measure/world.hpp"
 
 namespace calx {
 
@@ -46,20 +42,6 @@ class Windows {
   StressState sum_, last_, before_, peak_;
   std::vector<std::pair<double, double>> paces_;  // speed and normal stress of each window
   double steps_ = 0, time_ = 0, count_ = 0;
-};
-
-/// Counts the completed steps of a motion.
-class StepCount {
- public:
-  explicit StepCount(std::string motion) : motion_(std::move(motion)) {}
-  /// True when a step has ended since the last call.
-  bool ended(const WorldView& world);
-  double done() const { return done_; }
-  void set_done(double done) { done_ = done; }
-
- private:
-  std::string motion_;
-  double done_ = 0;
 };
 
 }  // namespace calx

@@ -83,7 +83,7 @@ class MotionSet {
     double start = 0;
     int carried_by = -1;
   };
-  int add(Entry e);
+  int add(Entry e, const std::string& name, bool waits_for_start, int carried_by);
   const Entry& entry(int motion) const;
   bool carries(int carrier, int motion) const;
   Pose own_pose(const Entry& e, double t) const;

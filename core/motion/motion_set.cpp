@@ -30,31 +30,26 @@ std::string number(double value) {
 int MotionSet::add(const std::string& name, const calx_motion* table, const calx_instance* instance,
                    bool waits_for_start, int carried_by) {
   Entry e;
-  e.name = name;
   e.table = table;
   e.instance = instance;
-  e.started = !waits_for_start;
-  e.carried_by = carried_by;
-  return add(e);
+  return add(std::move(e), name, waits_for_start, carried_by);
 }
 
 int MotionSet::add_servo(const std::string& name, const calx_servo* servo, const calx_state* state,
                          calx_instance* instance, const calx_host* host, bool waits_for_start, int carried_by) {
   Entry e;
-  e.name = name;
   e.servo = servo;
   e.state = state;
   e.host = host;
   e.servo_instance = instance;
   e.instance = instance;
-  e.started = !waits_for_start;
-  e.carried_by = carried_by;
-  return add(e);
+  return add(std::move(e), name, waits_for_start, carried_by);
 }
 
-int MotionSet::add(Entry e) {
-  const std::string name = e.name;
-  const int carried_by = e.carried_by;
+int MotionSet::add(Entry e, const std::string& name, bool waits_for_start, int carried_by) {
+  e.name = name;
+  e.started = !waits_for_start;
+  e.carried_by = carried_by;
   motions_.push_back(std::move(e));
   const int added = static_cast<int>(motions_.size()) - 1;
   std::string chain = "\"" + name + "\"";

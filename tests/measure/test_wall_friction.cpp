@@ -26,7 +26,7 @@ void run_step(FakeWorld& world, Sensor& sensor, double number, double normal, do
   for (int k = 0; k < 40; ++k) {
     const double now = shear * (1 + rise * (k / 10 - 3));
     world.loads[0].force = {-0.5 * now, 0, -0.5 * normal};
-    world.cycles["lid"] = k == 39 ? number : number - 0.5;
+    world.cycles["lid"] = k == 39 ? number - 1e-12 : number - 0.5;  // rounded
     sensor.step(world);
   }
 }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "measure/fake_world.hpp"
 #include "measure/windows.hpp"
 
 using namespace calx;
@@ -50,15 +49,4 @@ TEST_CASE("a step shorter than a window gives its own mean") {
   CHECK(w.last().normal == doctest::Approx(15));
   CHECK(w.peak().shear == doctest::Approx(5));
   CHECK(std::isnan(w.ratio_drift()));
-}
-
-TEST_CASE("steps of a motion are counted once each") {
-  FakeWorld world;
-  StepCount count("lid");
-  world.cycles["lid"] = 0.7;
-  CHECK_FALSE(count.ended(world));
-  world.cycles["lid"] = 1 - 1e-12;  // rounded
-  CHECK(count.ended(world));
-  CHECK_FALSE(count.ended(world));
-  CHECK(count.done() == 1);
 }
