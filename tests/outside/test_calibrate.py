@@ -22,9 +22,9 @@ STUDY = {
                      "measured": {"value": 5.0, "sd": 0.2, "repeats": 3}},
                     {"name": "kinetic energy", "kind": "other", "case": "cup", "sensor": "energy",
                      "column": "kinetic_translation_J", "against": "time_s", "at": [0.02, 0.03, 0.04], "unit": "mJ",
-                     "measured": {"values": [0.8, 0.9, 0.5], "relative": 0.2, "repeats": 2}},
+                     "measured": {"values": [0.097, 0.217, 0.308], "relative": 0.05, "repeats": 2}},
                     {"name": "height", "kind": "fill-height", "case": "cup", "sensor": "in cup", "column": "centre_z_m",
-                     "unit": "mm", "use": "hold-out", "measured": {"values": [10, 11, 12]}}],
+                     "unit": "mm", "use": "hold-out", "measured": {"values": [18, 19, 20]}}],
     "seeds": 2, "budget": {"runs": 20}, "assumptions": ["every measured value is made up"],
 }
 
@@ -91,15 +91,17 @@ class Calibrate(CalxTest):
         self.assertLess(c["parameters"][1]["q05"], 2.49)
         self.assertGreater(c["parameters"][1]["q95"], 2.49)
         self.assertLess(c["parameters"][1]["identifiability"], 0.4)
-        # These figures are so plain that the waves end early: six places, then what confirms them.
-        self.assertEqual(c["runs"], {"budget": 20, "spent": 14, "failed": 0, "seeds": 2})
-        self.assertIn("ended early", c["notes"][0])
-        self.assertEqual(self.read("cost.json")["computed"], 14)
+        # The waves may end before the budget does.
+        spent = c["runs"]["spent"]
+        self.assertEqual(c["runs"], {"budget": 20, "spent": spent, "failed": 0, "seeds": 2})
+        self.assertGreater(spent, 12)
+        self.assertLessEqual(spent, 20)
+        self.assertEqual(self.read("cost.json")["computed"], spent)
         by_name = {o["name"]: o for o in c["observables"]}
         self.assertEqual(by_name["kinetic energy"]["x"], [0.02, 0.03, 0.04])
         self.assertEqual(len(by_name["kinetic energy"]["predicted"]["q95"]), 3)
         self.assertAlmostEqual(by_name["mass"]["measured_sd"][0], 0.2 / 3 ** 0.5)
-        self.assertAlmostEqual(by_name["height"]["measured"][0], 11)
+        self.assertAlmostEqual(by_name["height"]["measured"][0], 19)
         self.assertTrue(by_name["mass"]["agrees"])
         with open(self.dir / "study.out" / "samples.csv", encoding="ascii") as file:
             rows = list(csv.DictReader(file))
@@ -108,7 +110,7 @@ class Calibrate(CalxTest):
         self.assertAlmostEqual(mean, c["parameters"][1]["mean"], places=6)
         with open(self.dir / "study.out" / "runs.csv", encoding="ascii") as file:
             runs = list(csv.DictReader(file))
-        self.assertEqual(len({r["seed"] for r in runs}), 14)
+        self.assertEqual(len({r["seed"] for r in runs}), spent)
         page = (self.dir / "study.out" / "report.html").read_text()
         for text in ("What the data tell", "kinetic energy", "every measured value is made up", "Emulators"):
             self.assertIn(text, page)
