@@ -3,6 +3,7 @@ import csv
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import time
@@ -68,6 +69,16 @@ class Calibrate(CalxTest):
         self.addCleanup(lambda: process.poll() is None and process.kill())
         return process
 
+    def assert_drawn(self, path, charts):
+        """A browser draws every chart of the page."""
+        self.assertGreater(charts, 5)
+        if not shutil.which("chromium"):
+            print("no chromium: the page was not opened")
+            return
+        done = subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={self.dir}/browser",
+                               "--dump-dom", path.as_uri()], text=True, capture_output=True, timeout=100, check=False)
+        self.assertEqual(done.stdout.count('role="img"'), charts, done.stderr[-2000:])
+
     def wait_for_runs(self, process, folder, count):
         limit = time.monotonic() + 60
         while not (self.dir / folder / "runs").exists() or len(self.finished(folder)) < count:
@@ -115,6 +126,7 @@ class Calibrate(CalxTest):
         for text in ("What the data tell", "kinetic energy", "every measured value is made up", "Emulators"):
             self.assertIn(text, page)
         self.assertNotIn("src=\"http", page)
+        self.assert_drawn(self.dir / "study.out" / "report.html", page.count("class=\"plot\""))
         self.assertEqual(self.calx("report", "study.out").code, 0)
 
     def test_a_case_extends_the_material(self):
