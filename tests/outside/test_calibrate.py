@@ -149,11 +149,6 @@ class Calibrate(CalxTest):
         self.wait_for_runs(process, "killed", 5)
         process.send_signal(signal.SIGKILL)
         process.wait(60)
-        # The runs of a killed study end with it.
-        limit = time.monotonic() + 10
-        while processes(str(self.dir / "killed")):
-            self.assertLess(time.monotonic(), limit, "runs go on after their study was killed")
-            time.sleep(0.02)
         before = self.finished("killed")
         self.assertLess(len(before), spent)
         self.assertFalse((self.dir / "killed" / "calibration.json").exists())
@@ -171,6 +166,22 @@ class Calibrate(CalxTest):
         self.write(cup({"/time/end": 0.041}))
         self.calibrate("-o", "killed")
         self.assertEqual(self.read("cost.json", "killed")["cached"], 0)
+
+    def test_runs_of_a_killed_study_end_with_it(self):
+        # Each run would take minutes.
+        self.write(cup({"/time/end": 60}))
+        process = self.start("-o", "out")
+        limit = time.monotonic() + 60
+        running = lambda: processes(str(self.dir / "out"))
+        while len(running()) < 2:
+            self.assertLess(time.monotonic(), limit)
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait(60)
+        limit = time.monotonic() + 10
+        while running():
+            self.assertLess(time.monotonic(), limit, "runs go on after their study was killed")
+            time.sleep(0.02)
 
     def test_interrupted(self):
         process = self.start("-o", "out")
