@@ -26,8 +26,9 @@ constexpr std::size_t kCandidates = 2000;
 constexpr double kImplausible = 3;
 /// New places are drawn from the posterior to the power 1 / this, twice as wide as the posterior itself.
 constexpr double kTemperature = 4;
-/// Waves end early when the emulators' own variance is below this share of what the measurement leaves open.
-constexpr double kEnough = 0.05;
+/// Waves end early when the emulators' own variance is below this share of all that is open: it then widens intervals
+/// by 5 %, which more runs could take away at most.
+constexpr double kEnough = 0.1;
 /// Posterior sd over prior sd from which on a parameter counts as not told by the data, and |correlation| of two that
 /// are told only together.
 constexpr double kConfounded = 0.8;
@@ -335,8 +336,15 @@ class Calibrator {
   }
 
   bool enough() const {
+    // The likelier half of the wide draws lies about where the posterior does.
+    const double median = quantile(list_of(wide_.log_density), 0.5);
+    Eigen::MatrixXd core(wide_.x.rows(), d_);
+    Eigen::Index kept = 0;
+    for (Eigen::Index k = 0; k < wide_.x.rows(); ++k)
+      if (wide_.log_density(k) >= median) core.row(kept++) = wide_.x.row(k);
+    core.conservativeResize(kept, d_);
     for (std::size_t o = 0; o < surrogates_.size(); ++o)
-      if (study_.observables[o].use == StudyObservable::Use::fit && emulator_share(o, wide_.x) > kEnough) return false;
+      if (study_.observables[o].use == StudyObservable::Use::fit && emulator_share(o, core) > kEnough) return false;
     return true;
   }
 
