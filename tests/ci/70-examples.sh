@@ -19,7 +19,7 @@ done < <(find examples -name '*.json' ! -name '*.plugin.json' ! -name '*.materia
 # The first plugin a case names that has no folder in plugins/, where any may be deleted; nothing when all are there.
 missing_plugin() {
   local id
-  for id in $(grep -oE '"(law|plugin|geometry)": *"calx\.[a-z-]+"' "$1" | grep -oE 'calx\.[a-z-]+' | sort -u); do
+  for id in $(grep -oE '"(law|plugin|geometry|effect)": *"calx\.[a-z-]+"' "$1" | grep -oE 'calx\.[a-z-]+' | sort -u); do
     grep -q "\"$id\"" plugins/*/*.plugin.json.in || { echo "$id"; return; }
   done
 }
