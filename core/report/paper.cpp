@@ -107,7 +107,7 @@ std::string row_content(Page& page, const PaperRows& rows, const PaperRow& row, 
     const PaperResult& r = results.form[form];
     checks += scatter_verdict(row, r);
     // A form that nobody began has said so in the table.
-    if (!r.runs.empty() || form == paper_reduced)
+    if (r.begun || form == paper_reduced)
       for (const std::string& m : r.missing) checks += check("open", "", html_text(m) + ".");
     for (const RunFolder& folder : r.runs)
       links += (links.empty() ? "Runs: " : ", ") + std::string("<a href=\"") +

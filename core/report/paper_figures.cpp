@@ -87,15 +87,18 @@ double term_value(const PaperRows& rows, const PaperRow& row, const PaperTerm& t
   return term.factor * value;
 }
 
-/// Finished runs of a form; says in missing which are not there and why.
+/// Finished runs of a form; says in result.missing which are not there and why.
 std::vector<RunFolder> finished(const PaperRun& run, int form, std::size_t seeds, const std::string& out,
-                                std::vector<std::string>& missing) {
+                                PaperResult& result) {
+  std::vector<std::string>& missing = result.missing;
   std::vector<RunFolder> found;
   std::string not_run, outdated;
   for (std::size_t k = 0; k < std::min(seeds, run.seeds.size()); ++k) {
     const std::string seed = std::to_string(run.seeds[k]);
     const std::string folder = paper_run_folder(out, run, form, run.seeds[k]);
-    switch (paper_run_state(folder, run.forms[form], run.seeds[k])) {
+    const PaperRunState state = paper_run_state(folder, run.forms[form], run.seeds[k]);
+    result.begun = result.begun || state != PaperRunState::missing;
+    switch (state) {
       case PaperRunState::missing:
         not_run += (not_run.empty() ? "" : ", ") + seed;
         break;
@@ -198,14 +201,14 @@ PaperResult paper_result(const PaperRows& rows, const PaperRow& row, int form, s
   const PaperRun& other = row.figure.minus_run.empty() ? run : paper_run(rows, row.figure.minus_run);
   result.exists = !run.forms[form].case_path.empty() && !other.forms[form].case_path.empty();
   if (!result.exists) return result;
-  result.runs = finished(run, form, seeds, out, result.missing);
+  result.runs = finished(run, form, seeds, out, result);
   if (!row.has_figure()) return result;
   result.values = values_of(rows, row, form, result.runs, result.missing);
   result.spread = spread_of(result.values);
   result.pooled = result.spread.deviation;
   if (row.figure.minus_run.empty()) return result;
 
-  const std::vector<RunFolder> runs = finished(other, form, seeds, out, result.missing);
+  const std::vector<RunFolder> runs = finished(other, form, seeds, out, result);
   const Spread minus = spread_of(values_of(rows, row, form, runs, result.missing));
   const Spread plus = result.spread;
   result.spread = {};

@@ -34,6 +34,7 @@ PaperDifference difference_to(double low, double high, const PaperReference& ref
 
 /// A row's figure over the seeds of one form.
 struct PaperResult {
+  bool begun = false;                // at least one of its runs has left something
   bool exists = false;               // the run has this form
   std::vector<RunFolder> runs;       // finished ones
   std::vector<double> values;        // in the row's unit, one a finished run that gives the figure

@@ -207,14 +207,15 @@ void add_paper_command(CLI::App& app) {
   auto o = std::make_shared<PaperOptions>();
   command->add_option("rows-file", o->path, std::string("rows file (default: ") + kRows + ")");
   command->add_option("-o,--out", o->out, "folder of runs and page (default: paper.out beside the rows file)");
-  command->add_option("--rows", o->rows, "run only for the row of this name; repeatable");
+  command->add_option("--rows", o->rows, "run only for the row of this name; repeatable")->allow_extra_args(false);
   command->add_option("--seeds", o->seeds, "the first N seeds of each run (default: all)")->check(whole_above_zero());
   command->add_flag("--full", o->full, "run the full forms: days on processors, meant for a GPU");
   command->add_option("--jobs", o->jobs, "runs at a time (default: one a core; full: 1)")->check(whole_above_zero());
   command->add_option("--threads", o->threads, "threads of a run (default: 1; full: all cores)")
       ->check(whole_above_zero());
   command->add_option("--device", o->device, "as for calx run");
-  command->add_option("--plugin-path", o->plugin_path, "folder with plugins, searched first; repeatable");
+  command->add_option("--plugin-path", o->plugin_path, "folder with plugins, searched first; repeatable")
+      ->allow_extra_args(false);
   command->add_flag("--page-only", o->page_only, "write the page of what is there, run nothing");
   command->add_flag("--quiet", o->quiet, "no progress");
   command->callback([o] { paper(*o); });
