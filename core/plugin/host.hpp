@@ -1,5 +1,6 @@
-// host.hpp: what a plugin sees of Calx: the host table and the extensions behind it. Private to core/plugin.
-// One host per loaded library and registry, so messages and log lines are known to come from that library.
+// host.hpp: what a plugin sees of Calx: the host table and the extensions behind it. For core/plugin and
+// core/conformance. One host per loaded library and registry, so messages and log lines are known to come from that
+// library.
 #pragma once
 #include <mutex>
 #include <string>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -203,7 +204,9 @@ struct Simulation::Impl {
 Simulation::Simulation(CaseFile input, const SimulationOptions& options)
     : impl_(std::make_unique<Impl>(std::move(input))) {
   World& w = impl_->w;
-  w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins);
+  // Beside the case may lie laws that are a text; a library there is not looked at.
+  const PluginTrust trust = {options.require_pins, std::filesystem::absolute(w.c.file).parent_path().string()};
+  w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins, trust);
   build_shapes(w);
   w.laws = load_laws(w.c, *w.registry);
   build_motions(w);

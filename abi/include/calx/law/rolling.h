@@ -56,7 +56,7 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real mr2 = c->m_eff * (c->r_i * (c->r_j > R(0.0) ? c->r_j : c->r_i));
   const real cr = c_given * r2 + R(2.0) * eta * calx_sqrt(R(1.4) * mr2 * kr);
   /* Type a below its cap: 2/5 m r^2 / dt would stop the spin in one step; an eighth, so that eight contacts may act. */
-  const real brake = type_a * R(0.05) * mr2 / c->dt;
+  const real brake = type_a * R(0.05) * mr2 / calx_max(c->dt, tiny);
   const real cap = rolling_friction * c->r_eff * fn;
   const real cap2 = cap * cap;
 

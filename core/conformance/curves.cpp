@@ -1,0 +1,70 @@
+// curves.cpp: what a contact law does, as curves for the page: a press and release, impacts, a tangential loop.
+#include <algorithm>
+#include <cmath>
+
+#include "conformance/checks.hpp"
+#include "conformance/law_rig.hpp"
+
+namespace calx::conformance {
+namespace {
+
+CheckCurve press(const LawRig& rig) {
+  CheckCurve curve{"normal", rig.name(), {}, {}};
+  std::vector<double> state = rig.fresh(1);
+  const int steps = 400;
+  for (int k = 0; k <= 2 * steps; ++k) {
+    const double share = k <= steps ? static_cast<double>(k) / steps : 2 - static_cast<double>(k) / steps;
+    if (share <= 0) continue;
+    const double d = share * rig.overlap();
+    curve.x.push_back(d);
+    // As slow as can be: dashpots do not act.
+    curve.y.push_back(rig.at(d, {}, {}, state, rig.dt()).force.z);
+  }
+  return curve;
+}
+
+CheckCurve impacts(const LawRig& rig) {
+  CheckCurve curve{"restitution", rig.name(), {}, {}};
+  for (double speed = 0.01; speed < 2.1; speed *= std::sqrt(2.0)) {
+    const LawRig::Impact impact = rig.impact(speed, rig.dt(), 0.5, 20000 * rig.dt());
+    curve.x.push_back(speed);
+    curve.y.push_back(std::max(0.0, impact.restitution));  // 0: they stay together
+  }
+  return curve;
+}
+
+CheckCurve shear(const LawRig& rig) {
+  CheckCurve curve{"tangential", rig.name(), {}, {}};
+  std::vector<double> state = rig.fresh(1);
+  const double d = 0.5 * rig.overlap();
+  rig.at(d, {}, {}, state, rig.dt());
+  const int steps = 400;
+  const double far = rig.overlap();
+  double x = 0;
+  for (const double to : {far, -far, far}) {
+    const double step = (to - x) / steps;
+    for (int k = 0; k < steps; ++k) {
+      x += step;
+      const LawRig::Wrench w = rig.at(d, {step / rig.dt(), 0, 0}, {}, state, rig.dt());
+      curve.x.push_back(x);
+      curve.y.push_back(-w.force.x);
+    }
+  }
+  return curve;
+}
+
+}  // namespace
+
+std::vector<CheckCurve> law_curves(Subject& subject) {
+  std::vector<CheckCurve> out;
+  const std::vector<LawRig> all = rigs(subject);
+  // Options differ in one thing each; more than six curves a chart cannot be told apart.
+  for (std::size_t k = 0; k < all.size() && k < 6; ++k) {
+    out.push_back(press(all[k]));
+    out.push_back(impacts(all[k]));
+    out.push_back(shear(all[k]));
+  }
+  return out;
+}
+
+}  // namespace calx::conformance
