@@ -104,7 +104,7 @@ std::string check_json(const CheckReport& report) {
 
 void write_check_page(const CheckReport& report, const std::string& file) {
   Page page("calx plugin check");
-  page.header("<p>" + html_text(totals(report)) + ". Calx " + html_text(version()) + ".</p>");
+  page.header("<h1>Plugin check</h1><p>" + html_text(totals(report)) + ". Calx " + html_text(version()) + ".</p>");
   std::size_t number = 0;
   for (const CheckedManifest& manifest : report.manifests) {
     std::vector<std::vector<std::string>> rows = {{"check", "of", "outcome", "meaning", "found"}};

@@ -56,14 +56,18 @@ CheckCurve shear(const LawRig& rig) {
 }  // namespace
 
 std::vector<CheckCurve> law_curves(Subject& subject) {
-  std::vector<CheckCurve> out;
-  const std::vector<LawRig> all = rigs(subject);
-  // Options differ in one thing each; more than six curves a chart cannot be told apart.
-  for (std::size_t k = 0; k < all.size() && k < 6; ++k) {
-    out.push_back(press(all[k]));
-    out.push_back(impacts(all[k]));
-    out.push_back(shear(all[k]));
+  std::vector<std::vector<CheckCurve>> shown;
+  for (const LawRig& rig : rigs(subject)) {
+    // Options that change none of the three would only hide each other; more than six curves cannot be told apart.
+    if (shown.size() == 6) break;
+    std::vector<CheckCurve> curves = {press(rig), impacts(rig), shear(rig)};
+    const bool seen = std::any_of(shown.begin(), shown.end(), [&](const std::vector<CheckCurve>& other) {
+      return other[0].y == curves[0].y && other[1].y == curves[1].y && other[2].y == curves[2].y;
+    });
+    if (!seen) shown.push_back(std::move(curves));
   }
+  std::vector<CheckCurve> out;
+  for (const std::vector<CheckCurve>& curves : shown) out.insert(out.end(), curves.begin(), curves.end());
   return out;
 }
 

@@ -22,6 +22,8 @@ class Host {
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
   const calx_host* table() const { return &table_; }
+  /// Log lines of the plugin are dropped from now on.
+  void be_silent() { silent_ = true; }
   /// The message the plugin left for that status since the last call, or "no message"; forgets it.
   std::string take_message(calx_status status);
 
@@ -32,6 +34,7 @@ class Host {
 
   calx_host table_;
   std::string speaker_;
+  bool silent_ = false;
   std::mutex mutex_;
   calx_status status_ = CALX_OK;
   std::string message_;

@@ -171,7 +171,9 @@ class Lint {
   /// Symbols, and macros and functions that the text defines.
   void collect() {
     value_macros_ = {"R", "calx_sqrt", "calx_abs", "calx_min", "calx_max"};
+    known_ = {"real", "R", "X", "const", "typedef", "struct", "void", "define", "c", "p", "pi", "pj", "s", "b", "out"};
     for (std::size_t k = 0; k < tokens_.size(); ++k) {
+      learn(k);
       if (begins_with(at(k), "CALX_LAW_DECLARE")) symbols_.emplace_back(at(k + 2), tokens_[k].line);
       if (at(k) == "CALX_FORCE_DECLARE") {
         symbols_.emplace_back(at(k + 2), tokens_[k].line);
@@ -185,6 +187,22 @@ class Lint {
     }
     // Texts that several laws share have no law of their own.
     stems_ = symbols_.empty() ? std::vector<std::string>{"calx_", "CALX_"} : std::vector<std::string>{stem_};
+  }
+
+  /// Names that the text makes known at k: "real a, b", "CALX_ID(type) a", "* a", parameters of macros, rows of lists.
+  void learn(std::size_t k) {
+    if (at(k) == "define" && at(k + 2) == "(")
+      for (std::size_t m = k + 3; m < tokens_.size() && at(m) != ")"; ++m) known_.insert(at(m));
+    if (at(k) == "X" && at(k + 1) == "(") known_.insert(at(k + 2));
+    const bool pointer = at(k) == "*" && (at(k - 1) == "real" || (at(k - 1) == ")" && at(k - 4) == "CALX_ID"));
+    const bool typed = at(k) == "real" || pointer || (at(k) == ")" && at(k - 3) == "CALX_ID");
+    if (!typed || !is_name(k + 1)) return;
+    std::size_t m = k + 1;
+    const std::string& end = at(m + 1);
+    if (end != "," && end != ";" && end != "=" && end != ")") return;
+    known_.insert(at(m));
+    for (; at(m + 1) == "," && is_name(m + 2) && (at(m + 3) == "," || at(m + 3) == ";"); m += 2)
+      known_.insert(at(m + 2));
   }
 
   /// The macro at k, "define NAME(a, b) ...", uses a parameter otherwise than as a->member.
@@ -258,6 +276,7 @@ class Lint {
       report(token.line, "no cast");
     if (t == "(" && at(k + 1) == "const" && at(k + 2) == "real" && (at(k + 3) == ")" || at(k + 4) == ")"))
       report(token.line, "no cast");
+    check_name(k);
     if (in_list_row(k)) return;
     const bool number = std::isdigit(static_cast<unsigned char>(t[0])) || (t[0] == '.' && t.size() > 1);
     if (number && t.find_first_of(".eE") != std::string::npos && begins_with(t, "0x") == false &&
@@ -287,8 +306,19 @@ class Lint {
       if (!declared && !given && !handed_on && !(tokens_[k].in_directive && is_parameter(k)))
         report(token.line, t + ": a pointer is followed by -> or handed to a function");
     }
-    if (is_name(k) && after == "(" && !member && !callable(k) && !forbidden().count(t))
-      report(token.line, t + " is no function of the text; calx_sqrt, calx_abs, calx_min and calx_max are there");
+  }
+
+  /// Nothing from outside of the text is used, neither a function nor a macro nor a variable.
+  void check_name(std::size_t k) {
+    const std::string& t = at(k);
+    if (!is_name(k) || at(k - 1) == "." || at(k - 1) == "->" || forbidden().count(t)) return;
+    const bool own = begins_with(t, "calx_") || begins_with(t, "CALX_") ||
+                     std::any_of(stems_.begin(), stems_.end(), [&](const std::string& s) { return begins_with(t, s); });
+    if (own || (t == "R" || t == "X")) return;
+    if (at(k + 1) == "(" && known_.count(t) == 0)
+      report(tokens_[k].line, t + " is no function of the text; calx_sqrt, calx_abs, calx_min and calx_max are there");
+    else if (known_.count(t) == 0 && !(tokens_[k].in_directive && at(k - 1) == "define"))
+      report(tokens_[k].line, t + ": a text uses nothing but what it is given and what it defines");
   }
 
   /// k lies in the list of arguments of the macro that its line defines.
@@ -312,14 +342,6 @@ class Lint {
     return false;
   }
 
-  bool callable(std::size_t k) const {
-    const std::string& t = at(k);
-    if (t == "R" || t == "X" || begins_with(t, "calx_") || begins_with(t, "CALX_")) return true;
-    for (const std::string& stem : stems_)
-      if (begins_with(t, stem)) return true;
-    return false;
-  }
-
   void check_symbols() {
     for (const auto& symbol : symbols_) {
       if (!begins_with(symbol.first, stem_))
@@ -337,7 +359,7 @@ class Lint {
   const std::string& text_;
   std::string stem_;
   std::vector<Token> tokens_;
-  std::set<std::string> pointers_, defines_, forces_, value_macros_;
+  std::set<std::string> pointers_, defines_, forces_, value_macros_, known_;
   int depth_ = 0;
   std::vector<std::pair<std::string, std::size_t>> symbols_;
   std::vector<std::string> stems_;

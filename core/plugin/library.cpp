@@ -43,11 +43,19 @@ auto guarded(const std::string& path, const char* during, Call call) {
   return result;
 }
 
+std::recursive_mutex& first_contact() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
 /// The first contact with foreign code happens in a child process; only what kills or blocks that is told here, for all
 /// else shows again, with its own message, in this process.
-void try_in_child(const std::string& path, const char* when, const std::function<void()>& contact) {
+void try_in_child(const std::string& path, const char* when, Host& host, const std::function<void()>& contact) {
+  // Taken where libraries are loaded, too: a child must not inherit a lock that a thread of its parent holds.
+  const std::lock_guard<std::recursive_mutex> one_at_a_time(first_contact());
   const ChildOutcome outcome = run_in_child(
       [&] {
+        host.be_silent();  // what it logs is logged when this process meets it
         try {
           contact();
         } catch (const Refused&) {
@@ -75,6 +83,7 @@ PluginLibrary::PluginLibrary(const PluginManifest& manifest, const std::string& 
     : path_(manifest.text.empty() ? manifest.library : manifest.text),
       in_child_(in_child || !manifest.text.empty()),
       host_(std::filesystem::path(path_).stem().string()) {
+  const std::string folder = std::filesystem::path(path_).parent_path().string();
   LibraryFile file(path_);
   sha256_ = file.sha256();
   if (!manifest.sha256.empty() && manifest.sha256 != sha256_)
@@ -82,22 +91,27 @@ PluginLibrary::PluginLibrary(const PluginManifest& manifest, const std::string& 
   if (!pin.empty() && pin != sha256_) throw Refused{path_ + " has SHA-256 " + sha256_ + ", but the case pins " + pin};
   if (!manifest.text.empty()) {
     entry_ = &compile_text_plugin(manifest, file.content(kLawTextLimit));
-    start();
+    start(folder);
     return;
   }
+  const std::lock_guard<std::recursive_mutex> one_at_a_time(first_contact());
   if (!in_child_ && !file.is_known())
-    try_in_child(path_, "was loaded and initialised", [&] {
+    try_in_child(path_, "was loaded and initialised", host_, [&] {
       entry_ = &file.load();
-      start();
+      start(folder);
       entry_->deinit();
     });
   entry_ = &file.load();
-  start();
+  start(folder);
 }
 
-void PluginLibrary::start() {
+PluginLibrary::PluginLibrary(const calx_entry& entry, const std::string& name)
+    : path_(name), in_child_(true), host_(name), entry_(&entry) {
+  start("");
+}
+
+void PluginLibrary::start(const std::string& folder) {
   check_entry();
-  const std::string folder = std::filesystem::path(path_).parent_path().string();
   const calx_status status = guarded(path_, "init", [&] { return entry_->init(host_.table(), folder.c_str()); });
   if (status < 0)
     throw Refused{path_ + ": init failed with " + status_name(status) + ": " + host_.take_message(status)};
@@ -179,12 +193,28 @@ const calx_descriptor& PluginLibrary::descriptor(const PluginManifest& manifest)
   return d;
 }
 
+std::vector<PluginManifest> PluginLibrary::own_manifests() const {
+  std::vector<PluginManifest> out;
+  for (const calx_descriptor* d : descriptors_) {
+    PluginManifest one;
+    one.id = d->id;
+    one.kind = d->kind;
+    one.version = d->version;
+    one.license = d->license;
+    one.summary = d->summary;
+    one.library = one.path = path_;
+    one.sha256 = sha256_;
+    out.push_back(one);
+  }
+  return out;
+}
+
 calx_status PluginLibrary::create(const calx_descriptor& descriptor, const calx_config& config, calx_instance** out) {
   *out = nullptr;
   std::string key = sha256_ + descriptor.id + std::string(config.json ? config.json : "", config.json_size);
   key.append(reinterpret_cast<const char*>(config.value), config.value_count * sizeof(double));
   if (!in_child_ && is_new_configuration(key))
-    try_in_child(path_, "made an instance", [&] {
+    try_in_child(path_, "made an instance", host_, [&] {
       calx_instance* made = nullptr;
       if (factory_->create(descriptor.id, host_.table(), &config, &made) < 0 || !made) return;
       factory_->get_interface(made, descriptor.kind);

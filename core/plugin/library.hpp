@@ -16,6 +16,8 @@ class PluginLibrary {
   /// process first. Throws Refused.
   /// in_child: this is a child process already.
   PluginLibrary(const PluginManifest& manifest, const std::string& pin, bool in_child = false);
+  /// One that lives in this program; name stands in messages. Throws Refused.
+  PluginLibrary(const calx_entry& entry, const std::string& name);
   /// One deinit for the one init; the plugin counts them when several simulations share it.
   ~PluginLibrary();
   PluginLibrary(const PluginLibrary&) = delete;
@@ -34,10 +36,12 @@ class PluginLibrary {
   /// child process before. Throws Refused when the plugin crashed there, ended the process or did not come back, when
   /// it changed the floating-point mode or reported success without an instance.
   calx_status create(const calx_descriptor& descriptor, const calx_config& config, calx_instance** out);
+  /// What a manifest would say of a plugin that has none.
+  std::vector<PluginManifest> own_manifests() const;
 
  private:
+  void start(const std::string& folder);
   void check_entry() const;
-  void start();
   void read_factory();
 
   std::string path_, sha256_;

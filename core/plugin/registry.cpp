@@ -61,7 +61,8 @@ struct PluginRegistry::Impl {
     const std::string& file = manifest.text.empty() ? manifest.library : manifest.text;
     const auto pin = pins.find(manifest.id);
     const std::string wanted = pin == pins.end() ? "" : pin->second;
-    if (wanted.empty() && pins_required) {
+    // What lives in this program has no file, and its word is that of the program.
+    if (wanted.empty() && pins_required && file.front() == '/') {
       const std::string hash = LibraryFile(file).sha256();
       throw Refused{"the case does not pin it, and pins are required; add \"plugins\": {\"" + manifest.id +
                     "\": {\"sha256\": \"" + hash + "\"}} to the case if you trust " + file};
@@ -111,6 +112,17 @@ PluginRegistry::PluginRegistry(const std::vector<std::string>& search,
 }
 
 PluginRegistry::~PluginRegistry() = default;
+
+void PluginRegistry::add(const calx_entry& entry, const std::string& name) {
+  try {
+    const auto library = std::make_shared<PluginLibrary>(entry, name);
+    impl_->libraries.emplace(name, library);
+    const std::vector<PluginManifest> own = library->own_manifests();
+    impl_->manifests.insert(impl_->manifests.begin(), own.begin(), own.end());
+  } catch (const Refused& refused) {
+    throw Error(Fault::plugin, "refused: " + refused.reason);
+  }
+}
 
 const calx_descriptor& PluginRegistry::load(const std::string& id, const std::string& kind, const std::string& file,
                                             const std::string& pointer) {

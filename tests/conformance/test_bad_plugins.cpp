@@ -101,6 +101,7 @@ TEST_CASE("what a law does wrong is found") {
   for (const Expected& one : {
            Expected{"text_differs", "text-host", "natively and"},
            {"leaning_text", "text-host", "LEANING_TEXT_STIFFER"},
+           {"leaning_text", "text-dialect", "LEANING_TEXT_STIFFER"},
            {"asymmetric", "swap", "trading i and j"},
            {"creates_energy", "energy", "more energy than was put in"},
            {"writes_past_the_rows", "blocks", "wrote outside of the "},

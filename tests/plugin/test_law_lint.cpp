@@ -35,6 +35,8 @@ TEST_CASE("every law text of the tree keeps to the dialect") {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(CALX_SOURCE_DIR) / folder)) {
       const std::string name = entry.path().string();
       if (name.size() < 6 || name.substr(name.size() - 6) != ".law.h") continue;
+      // This one leans on a macro of its plugin, on purpose.
+      if (name.find("leaning_text") != std::string::npos) continue;
       CAPTURE(name);
       CHECK(lint_text(lint_law(read_text(name), stem_of(entry.path())), name) == "");
       ++texts;
@@ -84,6 +86,11 @@ TEST_CASE("a text cannot reach memory or functions that are not its own") {
   CHECK(lint_body("  out->fx = CALX_ID(evil_help)(evil_ADD(c));", "#define evil_ADD(x) x + 1") != "");
   CHECK(lint_body("  out->fx = evil_K(p);", "#define evil_K(x) x->k") == "");
   CHECK(lint_body("  out->fx = R(1.0);", "#define evil_C c") != "");
+  // A function under a name of its own; one in a row of a list, which a table of the plugin would call.
+  CHECK(lint_body("  out->fx = evil_f(\"id\");", "#define evil_f system") != "");
+  CHECK(lint_body("  out->fx = R(1.0);", "#define evil_more(X) X(a, \"1\", 0, system(\"id\"), 0, 0, \"b\")") != "");
+  CHECK(lint_body("  out->fx = R(1.0);", "#define evil_more(X) X(a, \"1\", 0, 1, 0, CALX_VEC(1), \"b\")") == "");
+  CHECK(lint_body("  out->fx = OUTSIDE * p->k;").find("OUTSIDE: a text uses nothing but") != std::string::npos);
   CHECK(lint_body("  out->fx = R(1.0);", "#include <stdio.h>") != "");
   CHECK(lint_body("  out->fx = R(1.0);", "#define evil_paste(a) a##b") != "");
   CHECK(lint_body("  out->fx = R(1.0); /* no end") != "");

@@ -113,7 +113,7 @@ TEST_CASE("a text that breaks the dialect or does not compile is refused with fi
       refusal(scratch.path()).find("spring.law.h breaks the dialect of laws: spring.law.h:36: system is no function") !=
       std::string::npos);
   text = spring();
-  text.replace(text.find("out->fx = fn"), 12, "out->fx = missing_name");
+  text.replace(text.find("out->fx = fn"), 12, "out->missing = fn");
   scratch.write("spring.law.h", text);
   const std::string said = refusal(scratch.path());
   CAPTURE(said);
