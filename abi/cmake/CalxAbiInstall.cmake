@@ -1,4 +1,5 @@
-# Installs headers, find_package(CalxAbi) and calx-abi.pc; alone with cmake --install <build> --component abi.
+# Installs headers, find_package(CalxAbi), calx-abi.pc and the templates of calx plugin new; alone with
+# cmake --install <build> --component abi. The templates lie beside the program of the build tree, too.
 include(CMakePackageConfigHelpers)
 set(abi ${CMAKE_CURRENT_LIST_DIR}/..)
 file(STRINGS ${abi}/include/calx/abi.h lines REGEX "^#define CALX_ABI_(MAJOR|MINOR) ")
@@ -11,3 +12,7 @@ install(FILES ${CMAKE_CURRENT_LIST_DIR}/CalxAddPlugin.cmake ${CMAKE_CURRENT_LIST
               ${CMAKE_BINARY_DIR}/CalxAbiConfigVersion.cmake
         DESTINATION lib/cmake/CalxAbi COMPONENT abi)
 install(FILES ${CMAKE_BINARY_DIR}/calx-abi.pc DESTINATION lib/pkgconfig COMPONENT abi)
+install(DIRECTORY ${abi}/template DESTINATION share/calx COMPONENT abi)
+file(GLOB_RECURSE templates CONFIGURE_DEPENDS ${abi}/template/*)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${templates})
+file(COPY ${abi}/template DESTINATION ${CMAKE_BINARY_DIR}/share/calx)

@@ -1,6 +1,7 @@
-# calx_add_plugin(NAME SOURCES ... [LAWS x.law.h ...] [INCLUDES dirs...] MANIFEST x.plugin.json.in [NO_INSTALL])
+# calx_add_plugin(NAME SOURCES ... [LAWS x.law.h ...] [INCLUDES dirs...] MANIFEST x.plugin.json.in
+#                 [FILES files...] [NO_INSTALL])
 #
-# Builds one plugin library beside its manifest, in CALX_PLUGIN_DIR (default: <build>/plugins). Each law text is embedded
+# Builds one plugin library beside its manifest and FILES, in CALX_PLUGIN_DIR (default: <build>/plugins). Each law text is embedded
 # as a byte array in <law>.inc with its SHA-256 in <law>.sha256.inc, both generated into the build folder, so that text
 # and machine code cannot drift apart. Flags make laws vectorise without changing any value; -ffast-math is refused
 # because it would flush denormals in the host.
@@ -22,7 +23,7 @@ if(NOT TARGET Calx::abi)
 endif()
 
 function(calx_add_plugin name)
-  cmake_parse_arguments(A "NO_INSTALL" "MANIFEST" "SOURCES;LAWS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "NO_INSTALL" "MANIFEST" "SOURCES;LAWS;INCLUDES;FILES" ${ARGN})
   if(NOT A_SOURCES OR NOT A_MANIFEST OR A_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "${name}: calx_add_plugin needs SOURCES and MANIFEST (unknown: \"${A_UNPARSED_ARGUMENTS}\")")
   endif()
@@ -71,7 +72,11 @@ function(calx_add_plugin name)
   set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS ${out}/exports.map)
   set(CALX_PLUGIN_LIBRARY ${name}${CMAKE_SHARED_MODULE_SUFFIX})
   configure_file(${A_MANIFEST} ${CALX_PLUGIN_DIR}/${name}.plugin.json @ONLY)
+  if(A_FILES)
+    file(COPY ${A_FILES} DESTINATION ${CALX_PLUGIN_DIR})
+  endif()
   if(NOT A_NO_INSTALL)
+    install(FILES ${A_FILES} DESTINATION lib/calx/plugins)
     install(TARGETS ${name} LIBRARY DESTINATION lib/calx/plugins)
     install(FILES ${CALX_PLUGIN_DIR}/${name}.plugin.json DESTINATION lib/calx/plugins)
   endif()

@@ -1,9 +1,9 @@
 # Puts the texts that run on devices into the library calx_compute as byte arrays: every file of core/kernels, and what laws
-# are written against. A file added to core/kernels is embedded without a change here. Included by core/CMakeLists.txt
+# are written against, with what makes a plugin of a law text alone. A file added to core/kernels is embedded without a change here. Included by core/CMakeLists.txt
 # after calx_module(compute ...).
 file(GLOB device_texts CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/../kernels/*.h)
-foreach(name prelude sliding rolling)
-  list(APPEND device_texts ${PROJECT_SOURCE_DIR}/abi/include/calx/law/${name}.h)
+foreach(name law/prelude law/sliding law/rolling law/native law/force_native abi contact_law particle_force)
+  list(APPEND device_texts ${PROJECT_SOURCE_DIR}/abi/include/calx/${name}.h)
 endforeach()
 list(SORT device_texts)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${device_texts})

@@ -78,6 +78,31 @@ std::vector<std::string> plugin_search_path(const std::vector<std::string>& give
   return folders.list;
 }
 
+namespace {
+
+/// Paths of the manifests in a folder, sorted.
+std::vector<std::string> manifests_in(const std::string& folder) {
+  std::vector<std::string> out;
+  std::error_code bad;
+  for (fs::directory_iterator at(folder, bad), end; !bad && at != end; at.increment(bad))
+    if (is_manifest(at->path())) out.push_back(at->path().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Adds one manifest's plugin; of an id that is provided already the first wins.
+void add(PluginManifest one, std::map<std::string, std::string>& first, std::vector<PluginManifest>& found) {
+  if (one.refused.empty()) {
+    const auto added = first.emplace(one.id, one.path);
+    if (!added.second)
+      one.refused =
+          "id " + one.id + " is provided by " + added.first->second + " already, so " + one.path + " is not used";
+  }
+  found.push_back(std::move(one));
+}
+
+}  // namespace
+
 std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& path) {
   FolderList folders;
   for (const std::string& folder : path)
@@ -85,25 +110,26 @@ std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& pat
 
   std::vector<PluginManifest> found;
   std::map<std::string, std::string> first;  // usable id to the manifest that provides it
-  for (const std::string& folder : folders.list) {
-    std::vector<std::string> manifests;
-    std::error_code bad;
-    for (fs::directory_iterator at(folder, bad), end; !bad && at != end; at.increment(bad))
-      if (is_manifest(at->path())) manifests.push_back(at->path().string());
-    std::sort(manifests.begin(), manifests.end());
-    for (const std::string& manifest : manifests) {
-      for (PluginManifest& one : read_manifest(manifest)) {
-        if (one.refused.empty()) {
-          const auto added = first.emplace(one.id, one.path);
-          if (!added.second)
-            one.refused =
-                "id " + one.id + " is provided by " + added.first->second + " already, so " + one.path + " is not used";
-        }
-        found.push_back(std::move(one));
-      }
-    }
-  }
+  for (const std::string& folder : folders.list)
+    for (const std::string& manifest : manifests_in(folder))
+      for (PluginManifest& one : read_manifest(manifest)) add(std::move(one), first, found);
   return found;
+}
+
+void add_text_plugins(const std::string& folder, std::vector<PluginManifest>& found) {
+  FolderList folders;
+  folders.add(folder);
+  std::map<std::string, std::string> first;
+  for (const PluginManifest& one : found)
+    if (one.refused.empty()) first.emplace(one.id, one.path);
+  for (const std::string& real : folders.list)
+    for (const std::string& manifest : manifests_in(real)) {
+      // A folder of the search path may be that of the case, too.
+      if (std::any_of(found.begin(), found.end(), [&](const PluginManifest& one) { return one.path == manifest; }))
+        continue;
+      for (PluginManifest& one : read_manifest(manifest))
+        if (!one.text.empty()) add(std::move(one), first, found);
+    }
 }
 
 }  // namespace calx

@@ -70,7 +70,7 @@ calx_status Host::fail(const calx_host* host, calx_status code, const char* mess
 }
 
 void Host::log(const calx_host* host, std::int32_t level, const char* text) noexcept {
-  if (!host || !text) return;
+  if (!host || !text || static_cast<Host*>(host->self)->silent_) return;
   try {
     const std::string line = static_cast<Host*>(host->self)->speaker_ + ": " + text;
     log_line(level >= CALX_LOG_WARNING ? LogLevel::warning : LogLevel::info, line);

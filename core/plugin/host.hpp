@@ -1,5 +1,6 @@
-// host.hpp: what a plugin sees of Calx: the host table and the extensions behind it. Private to core/plugin.
-// One host per loaded library and registry, so messages and log lines are known to come from that library.
+// host.hpp: what a plugin sees of Calx: the host table and the extensions behind it. For core/plugin and
+// core/conformance. One host per loaded library and registry, so messages and log lines are known to come from that
+// library.
 #pragma once
 #include <mutex>
 #include <string>
@@ -21,6 +22,8 @@ class Host {
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
   const calx_host* table() const { return &table_; }
+  /// Log lines of the plugin are dropped from now on.
+  void be_silent() { silent_ = true; }
   /// The message the plugin left for that status since the last call, or "no message"; forgets it.
   std::string take_message(calx_status status);
 
@@ -31,6 +34,7 @@ class Host {
 
   calx_host table_;
   std::string speaker_;
+  bool silent_ = false;
   std::mutex mutex_;
   calx_status status_ = CALX_OK;
   std::string message_;

@@ -4,12 +4,18 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <mutex>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/nearest.hpp"
+#include "plugin/child.hpp"
 #include "plugin/float_mode.hpp"
+#include "plugin/law_lint.hpp"
 #include "plugin/refused.hpp"
 #include "plugin/tables.hpp"
+#include "plugin/text_plugin.hpp"
 
 namespace calx {
 namespace {
@@ -19,6 +25,9 @@ std::string hex(std::uint32_t value) {
   std::snprintf(out, sizeof out, "0x%08x", static_cast<unsigned>(value));
   return out;
 }
+
+/// Wall time for a first contact, s: enough for a plugin that reads large files on a busy machine.
+constexpr double kFirstContactLimit = 60;
 
 /// Calls into the plugin; a changed floating-point mode is put back and refused.
 template <class Call>
@@ -34,21 +43,70 @@ auto guarded(const std::string& path, const char* during, Call call) {
   return result;
 }
 
+std::recursive_mutex& first_contact() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+/// The first contact with foreign code happens in a child process; only what kills or blocks that is told here, for all
+/// else shows again, with its own message, in this process.
+void try_in_child(const std::string& path, const char* when, Host& host, const std::function<void()>& contact) {
+  // Taken where libraries are loaded, too: a child must not inherit a lock that a thread of its parent holds.
+  const std::lock_guard<std::recursive_mutex> one_at_a_time(first_contact());
+  const ChildOutcome outcome = run_in_child(
+      [&] {
+        host.be_silent();  // what it logs is logged when this process meets it
+        try {
+          contact();
+        } catch (const Refused&) {
+        }
+        return std::string();
+      },
+      kFirstContactLimit);
+  // Where no child can be started the plugin is not refused for it.
+  if (outcome.answered() || outcome.end == ChildOutcome::End::not_started) return;
+  throw Refused{path + " " + outcome.text() + " when it " + when +
+                "; this was tried in a process of its own, so nothing else was harmed"};
+}
+
+/// Configurations that have made an instance in a child: library, id, values and JSON.
+bool is_new_configuration(const std::string& key) {
+  static std::mutex mutex;
+  static std::set<std::string> seen;
+  const std::lock_guard<std::mutex> lock(mutex);
+  return seen.insert(key).second;
+}
+
 }  // namespace
 
-PluginLibrary::PluginLibrary(const PluginManifest& manifest, const std::string& pin)
-    : path_(manifest.library), host_(std::filesystem::path(manifest.library).stem().string()) {
+PluginLibrary::PluginLibrary(const PluginManifest& manifest, const std::string& pin, bool in_child)
+    : path_(manifest.text.empty() ? manifest.library : manifest.text),
+      in_child_(in_child || !manifest.text.empty()),
+      host_(std::filesystem::path(path_).stem().string()) {
+  const std::string folder = std::filesystem::path(path_).parent_path().string();
   LibraryFile file(path_);
   sha256_ = file.sha256();
   if (!manifest.sha256.empty() && manifest.sha256 != sha256_)
     throw Refused{path_ + " has SHA-256 " + sha256_ + ", but its manifest says " + manifest.sha256};
   if (!pin.empty() && pin != sha256_) throw Refused{path_ + " has SHA-256 " + sha256_ + ", but the case pins " + pin};
+  if (!manifest.text.empty()) {
+    entry_ = &compile_text_plugin(manifest, file.content(kLawTextLimit));
+    start(folder);
+    return;
+  }
+  const std::lock_guard<std::recursive_mutex> one_at_a_time(first_contact());
+  if (!in_child_ && !file.is_known())
+    try_in_child(path_, "was loaded and initialised", host_, [&] {
+      entry_ = &file.load();
+      start(folder);
+      entry_->deinit();
+    });
   entry_ = &file.load();
-  start(std::filesystem::path(path_).parent_path().string());
+  start(folder);
 }
 
 PluginLibrary::PluginLibrary(const calx_entry& entry, const std::string& name)
-    : path_(name), host_(name), entry_(&entry) {
+    : path_(name), in_child_(true), host_(name), entry_(&entry) {
   start("");
 }
 
@@ -152,6 +210,15 @@ std::vector<PluginManifest> PluginLibrary::own_manifests() const {
 
 calx_status PluginLibrary::create(const calx_descriptor& descriptor, const calx_config& config, calx_instance** out) {
   *out = nullptr;
+  std::string key = sha256_ + descriptor.id + std::string(config.json ? config.json : "", config.json_size);
+  key.append(reinterpret_cast<const char*>(config.value), config.value_count * sizeof(double));
+  if (!in_child_ && is_new_configuration(key))
+    try_in_child(path_, "made an instance", host_, [&] {
+      calx_instance* made = nullptr;
+      if (factory_->create(descriptor.id, host_.table(), &config, &made) < 0 || !made) return;
+      factory_->get_interface(made, descriptor.kind);
+      factory_->destroy(made);
+    });
   const calx_status status =
       guarded(path_, "create", [&] { return factory_->create(descriptor.id, host_.table(), &config, out); });
   if (status >= 0 && !*out) throw Refused{path_ + ": create reported success but made no instance"};

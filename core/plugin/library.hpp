@@ -1,5 +1,5 @@
 // library.hpp: one loaded plugin library as one registry sees it, negotiated step by step (ABI: magic, major, sizes,
-// init, factory, descriptors). Private to core/plugin.
+// init, factory, descriptors). For core/plugin and core/conformance.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,8 +12,10 @@ namespace calx {
 
 class PluginLibrary {
  public:
-  /// pin: SHA-256 the case asks for, or empty. Throws Refused.
-  PluginLibrary(const PluginManifest& manifest, const std::string& pin);
+  /// pin: SHA-256 the case asks for, or empty. A library that this process meets for the first time comes up in a child
+  /// process first. Throws Refused.
+  /// in_child: this is a child process already.
+  PluginLibrary(const PluginManifest& manifest, const std::string& pin, bool in_child = false);
   /// One that lives in this program; name stands in messages. Throws Refused.
   PluginLibrary(const calx_entry& entry, const std::string& name);
   /// One deinit for the one init; the plugin counts them when several simulations share it.
@@ -23,13 +25,16 @@ class PluginLibrary {
 
   const std::string& path() const { return path_; }
   const std::string& sha256() const { return sha256_; }
+  const calx_entry& entry() const { return *entry_; }
   const calx_factory& factory() const { return *factory_; }
+  const std::vector<const calx_descriptor*>& descriptors() const { return descriptors_; }
   Host& host() { return host_; }
   /// The descriptor the manifest promises. Throws Refused: not there, another kind or version, needs what the host
   /// lacks.
   const calx_descriptor& descriptor(const PluginManifest& manifest) const;
-  /// Null out with a negative status: see host().take_message(). Throws Refused when the plugin changed the
-  /// floating-point mode or reported success without an instance.
+  /// Null out with a negative status: see host().take_message(). The first time for a configuration it is tried in a
+  /// child process before. Throws Refused when the plugin crashed there, ended the process or did not come back, when
+  /// it changed the floating-point mode or reported success without an instance.
   calx_status create(const calx_descriptor& descriptor, const calx_config& config, calx_instance** out);
   /// What a manifest would say of a plugin that has none.
   std::vector<PluginManifest> own_manifests() const;
@@ -40,6 +45,7 @@ class PluginLibrary {
   void read_factory();
 
   std::string path_, sha256_;
+  bool in_child_;
   Host host_;
   const calx_entry* entry_ = nullptr;
   const calx_factory* factory_ = nullptr;

@@ -96,6 +96,29 @@ LibraryFile::~LibraryFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
+std::string LibraryFile::content(std::size_t limit) const {
+  std::string out(limit + 1, '\0');
+  std::size_t at = 0;
+  while (at < out.size()) {
+    const ssize_t n = ::pread(descriptor_, &out[at], out.size() - at, static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw Refused{path_ + " cannot be read: " + std::strerror(errno)};
+    if (n == 0) break;
+    at += static_cast<std::size_t>(n);
+  }
+  if (at > limit) throw Refused{path_ + " is larger than " + std::to_string(limit) + " bytes"};
+  out.resize(at);
+  return out;
+}
+
+bool LibraryFile::is_known() const {
+  LoadedLibraries& libraries = loaded_libraries();
+  const std::lock_guard<std::mutex> lock(libraries.mutex);
+  for (const LoadedLibrary& known : libraries.list)
+    if (known.device == device_ && known.inode == inode_) return true;
+  return false;
+}
+
 const calx_entry& LibraryFile::load() {
   LoadedLibraries& libraries = loaded_libraries();
   const std::lock_guard<std::mutex> lock(libraries.mutex);

@@ -1,5 +1,5 @@
 // loader.hpp: from a path to the entry of a plugin library. The only place where foreign code enters the process.
-// Private to core/plugin.
+// For core/plugin and core/conformance.
 #pragma once
 #include <string>
 
@@ -18,6 +18,10 @@ class LibraryFile {
   LibraryFile& operator=(const LibraryFile&) = delete;
 
   const std::string& sha256() const { return sha256_; }
+  /// The bytes of the opened file, for a law text. Throws Refused beyond limit bytes.
+  std::string content(std::size_t limit) const;
+  /// This process has loaded it before, so that it is known to come up.
+  bool is_known() const;
   /// Loads it with immediate, local binding and returns its exported entry, which stays valid to the end of the
   /// process: nothing is unloaded. Throws Refused: cannot be loaded, no such symbol, changed the floating-point mode.
   const calx_entry& load();

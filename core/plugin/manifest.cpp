@@ -23,7 +23,8 @@ using nlohmann::json;
 
 const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",      "version", "vendor",
                                                 "license",     "plugins", "requires", "sha256"};
-const std::vector<std::string> plugin_keys = {"id", "kind", "summary", "effect"};
+const std::vector<std::string> plugin_keys = {"id",     "kind",      "summary", "effect", "text",
+                                               "symbol", "stiffness", "example", "surface"};
 
 /// "linux-x86_64": the key of this machine's library where a manifest names several.
 std::string platform() {
@@ -113,7 +114,19 @@ std::string host_fault(const json& root) {
   return "";
 }
 
-/// Absolute path of the library; refuses one that leads out of the manifest's folder.
+/// Absolute path of a file beside the manifest; refuses one that leads out of its folder.
+std::string path_beside(const std::string& name, const std::string& where, const fs::path& folder) {
+  const fs::path wanted = (folder / name).lexically_normal();
+  std::error_code bad;
+  const fs::path parent = fs::canonical(wanted.parent_path(), bad);
+  const auto meet = std::mismatch(folder.begin(), folder.end(), parent.begin(), parent.end());
+  const bool inside = !bad && meet.first == folder.end();
+  if (!inside || !wanted.has_filename()) throw Refused{where + ": \"" + name + "\" lies outside the manifest's folder"};
+  const fs::path file = parent / wanted.filename();
+  if (!fs::exists(fs::symlink_status(file, bad))) throw Refused{where + ": " + file.string() + " does not exist"};
+  return file.string();
+}
+
 std::string library_path(const json& root, const fs::path& folder) {
   const json& value = member(root, "library", "");
   std::string name;
@@ -128,15 +141,58 @@ std::string library_path(const json& root, const fs::path& folder) {
   } else {
     name = text(root, "library", "");
   }
-  const fs::path wanted = (folder / name).lexically_normal();
-  std::error_code bad;
-  const fs::path parent = fs::canonical(wanted.parent_path(), bad);
-  const auto meet = std::mismatch(folder.begin(), folder.end(), parent.begin(), parent.end());
-  const bool inside = !bad && meet.first == folder.end();
-  if (!inside || !wanted.has_filename()) throw Refused{"/library: \"" + name + "\" lies outside the manifest's folder"};
-  const fs::path library = parent / wanted.filename();
-  if (!fs::exists(fs::symlink_status(library, bad))) throw Refused{"/library: " + library.string() + " does not exist"};
-  return library.string();
+  return path_beside(name, "/library", folder);
+}
+
+std::vector<std::string> names(const json& object, const char* key, const std::string& where) {
+  std::vector<std::string> out;
+  const auto found = object.find(key);
+  if (found == object.end()) return out;
+  if (!found->is_array()) throw Refused{where + "/" + key + ": " + found->dump() + " is not a list of names"};
+  for (const json& one : *found) {
+    if (!one.is_string()) throw Refused{where + "/" + key + ": " + one.dump() + " is not a name"};
+    out.push_back(one.get<std::string>());
+  }
+  return out;
+}
+
+/// A plugin that is a law text: no library, nothing runs before the host has read and compiled the text.
+void read_text_plugin(const json& plugin, const std::string& where, PluginManifest& one) {
+  const std::string name = text(plugin, "text", where);
+  if (one.kind != CALX_CONTACT_LAW && one.kind != CALX_PARTICLE_FORCE)
+    throw Refused{where + "/text: a plugin of the kind " + one.kind + " needs a library; a text can be a " +
+                  CALX_CONTACT_LAW + " or a " + CALX_PARTICLE_FORCE};
+  static const std::string ending = ".law.h";
+  if (name.size() <= ending.size() || name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
+    throw Refused{where + "/text: \"" + name + "\" does not end in .law.h"};
+  const std::string stem = fs::path(name.substr(0, name.size() - ending.size())).filename().string();
+  one.symbol = plugin.count("symbol") ? text(plugin, "symbol", where) : stem;
+  if (one.symbol.compare(0, stem.size(), stem) != 0 ||
+      one.symbol.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+    throw Refused{where + "/symbol: \"" + one.symbol + "\" is not a name of lower-case letters that begins with \"" +
+                  stem + "\", the stem of the text's file"};
+  one.stiffness = names(plugin, "stiffness", where);
+  for (const std::string& column : one.stiffness)
+    if (column.empty() || column.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+      throw Refused{where + "/stiffness: \"" + column + "\" is not the name of a column"};
+  one.text = path_beside(name, where + "/text", fs::path(one.path).parent_path());
+}
+
+/// What only `calx plugin check` reads.
+void read_hints(const json& plugin, const std::string& where, PluginManifest& one) {
+  const auto example = plugin.find("example");
+  if (example != plugin.end()) {
+    for (const json& each : example->is_array() ? *example : json::array({*example})) {
+      if (!each.is_object())
+        throw Refused{where + "/example: " + each.dump() + " is not an object of parameters, nor a list of such"};
+      one.examples.push_back(each.dump());
+    }
+  }
+  if (!plugin.count("surface")) return;
+  const std::string surface = text(plugin, "surface", where);
+  if (surface != "open" && surface != "closed")
+    throw Refused{where + "/surface: \"" + surface + "\" is neither \"open\" nor \"closed\""};
+  one.open = surface == "open";
 }
 
 json parse(const std::string& path) {
@@ -173,6 +229,7 @@ std::vector<PluginManifest> read_manifest(const std::string& path) {
     if (!newer) check_keys(root, manifest_keys, "");
     common.version = text(root, "version", "");
     common.license = text(root, "license", "");
+    common.vendor = root.count("vendor") ? text(root, "vendor", "") : "";
     if (root.count("sha256")) {
       common.sha256 = text(root, "sha256", "");
       if (!is_sha256(common.sha256)) throw Refused{"/sha256: not 64 lower-case hexadecimal digits"};
@@ -201,10 +258,19 @@ std::vector<PluginManifest> read_manifest(const std::string& path) {
       if (one.refused.empty() && one.kind != kCaseEffect &&
           std::find(kinds.begin(), kinds.end(), one.kind) == kinds.end())
         one.refused = "of the kind " + one.kind + ", which this host does not know; it knows " + quoted_list(kinds);
+      read_hints(plugins[k], where, one);
       out.push_back(std::move(one));
     }
     // Last, so that a case naming an id is told that its library is missing, not that the id is unknown.
-    if (fault.empty() && !(all_edits && !root.count("library"))) {
+    std::size_t texts = 0;
+    for (std::size_t k = 0; k < plugins.size(); ++k)
+      if (plugins[k].count("text")) {
+        read_text_plugin(plugins[k], "/plugins/" + std::to_string(k), out[k]);
+        ++texts;
+      }
+    if (texts > 0 && (root.count("library") || texts < plugins.size()))
+      throw Refused{"/library: a manifest names either a library or a text for each of its plugins, not both"};
+    if (fault.empty() && texts == 0 && !(all_edits && !root.count("library"))) {
       const std::string library = library_path(root, fs::path(path).parent_path());
       for (PluginManifest& one : out) one.library = library;
     }

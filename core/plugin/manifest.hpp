@@ -1,4 +1,4 @@
-// manifest.hpp: reads one NAME.plugin.json. Private to core/plugin.
+// manifest.hpp: reads one NAME.plugin.json. For core/plugin and core/conformance.
 #pragma once
 #include <string>
 #include <vector>

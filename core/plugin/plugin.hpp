@@ -13,10 +13,15 @@ namespace calx {
 
 /// One manifest NAME.plugin.json found in a search folder.
 struct PluginManifest {
-  std::string id, kind, version, license, summary;
+  std::string id, kind, version, vendor, license, summary;
   std::string library;  // absolute path of the shared library; empty for an effect of edits alone
   std::string path;     // absolute path of the manifest
-  std::string sha256;   // of the library as the manifest states it; empty: not stated
+  std::string sha256;   // of the library, or of the text, as the manifest states it; empty: not stated
+  std::string text;     // absolute path of a law text, where the plugin has no library: the host compiles it
+  std::string symbol;   // of the law in that text
+  std::vector<std::string> stiffness;  // columns of the text's pair row that are stiffnesses, N/m: the stable step
+  std::vector<std::string> examples;   // JSON objects of parameters that `calx plugin check` tries besides presets
+  bool open = false;                   // a geometry whose surface has rims on purpose
   std::string refused;  // why it cannot be used (bad manifest, duplicate id, other architecture); empty: usable
   std::shared_ptr<const EffectInfo> effect{};  // what it says of itself as an effect (effects.hpp); null: it is none
 };
@@ -28,6 +33,10 @@ std::vector<std::string> plugin_search_path(const std::vector<std::string>& give
 
 /// All manifests in the folders, sorted within each folder; of a duplicate id the first wins, the others are refused.
 std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& path);
+
+/// What the folder of a case may add: plugins that are a law text, never a library. Of an id that stands in found
+/// already, or twice, the later one is refused.
+void add_text_plugins(const std::string& folder, std::vector<PluginManifest>& found);
 
 class PluginLibrary;
 
@@ -61,12 +70,19 @@ struct PluginProvenance {
   std::string id, version, sha256, path;
 };
 
-/// One per simulation: ids to loaded libraries. [main]
+/// What a registry takes besides libraries of its search folders.
+struct PluginTrust {
+  bool pins_required = false;  // refuse what the case does not pin
+  std::string text_folder;     // of the case: plugins there that are a law text; empty: none
+};
+
+/// One per simulation: ids to loaded libraries. A library that this process has not met is loaded, initialised and
+/// asked for an instance in a child process first, so that one that crashes, hangs or exits there is refused. [main]
 class PluginRegistry {
  public:
   /// search: the folders, usually from plugin_search_path. pins: id and sha256 that must match.
   explicit PluginRegistry(const std::vector<std::string>& search,
-                          std::vector<std::pair<std::string, std::string>> pins = {});
+                          std::vector<std::pair<std::string, std::string>> pins = {}, const PluginTrust& trust = {});
   ~PluginRegistry();
 
   /// Plugins that live in this program, before any of the same id in a folder; entry outlives the registry. name stands

@@ -1,5 +1,5 @@
 // refused.hpp: why a plugin cannot be used, on its way from the check that found it to the registry, which adds where
-// the case names the plugin. Private to core/plugin.
+// the case names the plugin. For core/plugin and core/conformance.
 #pragma once
 #include <string>
 

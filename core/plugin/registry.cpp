@@ -29,6 +29,7 @@ std::string lower(std::string text) {
 struct PluginRegistry::Impl {
   std::vector<std::string> search;
   std::map<std::string, std::string> pins;
+  bool pins_required = false;
   std::vector<PluginManifest> manifests;
   std::map<std::string, std::shared_ptr<PluginLibrary>> libraries;  // by path
   std::map<std::string, PluginProvenance> loaded;                   // by id
@@ -59,16 +60,25 @@ struct PluginRegistry::Impl {
   }
 
   std::shared_ptr<PluginLibrary> library(const PluginManifest& manifest) {
+    const std::string& file = manifest.text.empty() ? manifest.library : manifest.text;
     const auto pin = pins.find(manifest.id);
     const std::string wanted = pin == pins.end() ? "" : pin->second;
-    const auto open = libraries.find(manifest.library);
+    // What lives in this program has no file, and its word is that of the program.
+    if (wanted.empty() && pins_required && file.front() == '/') {
+      const std::string hash = LibraryFile(file).sha256();
+      throw Refused{"the case does not pin it, and pins are required; add \"plugins\": {\"" + manifest.id +
+                    "\": {\"sha256\": \"" + hash + "\"}} to the case if you trust " + file};
+    }
+    // Each text is a library of its own; a library may hold several plugins.
+    const std::string key = manifest.text.empty() ? file : file + " " + manifest.id;
+    const auto open = libraries.find(key);
     if (open != libraries.end()) {
       if (!wanted.empty() && wanted != open->second->sha256())
-        throw Refused{manifest.library + " has SHA-256 " + open->second->sha256() + ", but the case pins " + wanted};
+        throw Refused{file + " has SHA-256 " + open->second->sha256() + ", but the case pins " + wanted};
       return open->second;
     }
     auto fresh = std::make_shared<PluginLibrary>(manifest, wanted);
-    libraries.emplace(manifest.library, fresh);
+    libraries.emplace(key, fresh);
     return fresh;
   }
 
@@ -94,11 +104,13 @@ struct PluginRegistry::Impl {
 };
 
 PluginRegistry::PluginRegistry(const std::vector<std::string>& search,
-                               std::vector<std::pair<std::string, std::string>> pins)
+                               std::vector<std::pair<std::string, std::string>> pins, const PluginTrust& trust)
     : impl_(new Impl) {
+  impl_->pins_required = trust.pins_required;
   impl_->search = search;
   for (const auto& pin : pins) impl_->pins[pin.first] = lower(pin.second);
   impl_->manifests = discover_plugins(search);
+  if (!trust.text_folder.empty()) add_text_plugins(trust.text_folder, impl_->manifests);
 }
 
 PluginRegistry::~PluginRegistry() = default;

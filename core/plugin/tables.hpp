@@ -1,5 +1,6 @@
 // tables.hpp: does what a plugin hands over keep the contract? Field tables, descriptors, and the function table of
-// every kind. Each check returns what is wrong as the rest of a sentence, or an empty text. Private to core/plugin.
+// every kind. Each check returns what is wrong as the rest of a sentence, or an empty text. For core/plugin and
+// core/conformance.
 #pragma once
 #include <string>
 #include <vector>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -218,7 +219,14 @@ struct Simulation::Impl {
 Simulation::Simulation(CaseFile input, const SimulationOptions& options)
     : impl_(std::make_unique<Impl>(std::move(input))) {
   World& w = impl_->w;
-  w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins);
+  // Beside the file of a case may lie laws that are a text; a library there is not looked at. A case without a file has no
+  // such folder: the working directory is never searched.
+  std::error_code none;
+  PluginTrust trust;
+  trust.pins_required = options.require_pins;
+  if (std::filesystem::is_regular_file(w.c.file, none))
+    trust.text_folder = std::filesystem::canonical(w.c.file, none).parent_path().string();
+  w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins, trust);
   for (const calx_entry* entry : options.plugins)
     w.registry->add(*entry, "plugin " + std::to_string(&entry - options.plugins.data()) + " of this program");
   build_shapes(w);

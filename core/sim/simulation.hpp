@@ -17,6 +17,7 @@ struct SimulationOptions {
   std::string device = "cpu";  // "auto", "cpu", "opencl", "cuda" or "host", the last three also with ":ordinal"
   bool fast = false;           // devices may contract a * b + c: other last digits than the processor's
   std::vector<std::string> plugin_path;
+  bool require_pins = false;               // refuse plugins whose hash the case does not give
   std::vector<const calx_entry*> plugins;  // in this program; used before any of the same id in a folder
 };
 

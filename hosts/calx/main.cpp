@@ -13,9 +13,10 @@
 #include "bench.hpp"
 #include "calibrate.hpp"
 #include "calx/abi.h"
+#include "last_words.hpp"
 #include "options.hpp"
 #include "paper.hpp"
-#include "plugin/plugin.hpp"
+#include "plugin_commands.hpp"
 #include "progress.hpp"
 #include "report/calibration_page.hpp"
 #include "report/report.hpp"
@@ -48,7 +49,7 @@ struct CaseFlags {
   calx::RunOptions run;
   std::string device = "auto", precision = "double", arithmetic = "exact";
   long long seed = -1;
-  bool quiet = false, json = false, no_report = false;
+  bool quiet = false, json = false, no_report = false, require_pins = false;
 
   void add_common(CLI::App& app) {
     app.add_option("case", run.case_path, "case file (JSON)")->required();
@@ -62,6 +63,7 @@ struct CaseFlags {
                    "exact, or fast: devices may contract a * b + c, to other last digits than the processor's");
     app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(calx::whole_number());
     app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+    app.add_flag("--require-pins", require_pins, "load only plugins whose SHA-256 the case gives");
   }
   calx::RunOptions options() {
     if (precision != "double" && precision != "mixed")
@@ -74,6 +76,7 @@ struct CaseFlags {
     for (const auto& s : set) run.overrides.push_back(split_override(s));
     if (seed >= 0) run.overrides.emplace_back("/seed", std::to_string(seed));
     run.simulation.plugin_path = plugin_path;
+    run.simulation.require_pins = require_pins;
     return run;
   }
 };
@@ -93,6 +96,7 @@ int run(CaseFlags& flags) {
     progress.message("report: " + calx::write_report(folder));
   };
   try {
+    const calx::LastWords last_words(folder);
     calx::run_case(options);
   } catch (const calx::Error& e) {
     progress.end();
@@ -197,26 +201,7 @@ int main(int argc, char** argv) {
     std::printf("%s\n", calx::write_report(report_folder).c_str());
   });
 
-  auto* plugin_command = app.add_subcommand("plugin", "list, describe and explain plugins");
-  plugin_command->require_subcommand(1);
-  std::vector<std::string> plugin_path;
-  std::string plugin_id;
-  auto* list_command = plugin_command->add_subcommand("list", "every plugin found, and what was refused and why");
-  list_command->callback(
-      [&] { std::fputs(calx::plugin_list_text(calx::plugin_search_path(plugin_path)).c_str(), stdout); });
-  auto* describe_command = plugin_command->add_subcommand("describe", "parameters with units, ranges and presets");
-  describe_command->add_option("id", plugin_id, "plugin id")->required();
-  describe_command->callback([&] {
-    std::fputs(calx::plugin_describe_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout);
-  });
-  auto* schema_command = plugin_command->add_subcommand("schema", "JSON Schema of a plugin's parameters");
-  schema_command->add_option("id", plugin_id, "plugin id")->required();
-  schema_command->callback(
-      [&] { std::fputs(calx::plugin_schema_text(plugin_id, calx::plugin_search_path(plugin_path)).c_str(), stdout); });
-
-  for (auto* command : {list_command, describe_command, schema_command})
-    command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
-
+  calx::add_plugin_command(app);
   calx::add_bench_command(app);
   calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);
   calx::add_paper_command(app);

@@ -74,7 +74,8 @@ static uint32_t CALX_CALL count(void) { return 1; }
 static const calx_descriptor* CALX_CALL get_descriptor(uint32_t index) { return index == 0 ? &descriptor : 0; }
 static calx_status CALX_CALL create(const char* id, const calx_host* host, const calx_config* config,
                                     calx_instance** out) {
-  (void)id, (void)host, (void)config, (void)out, (void)the_instance;
+  (void)config, (void)out, (void)the_instance;
+  if (strcmp(id, BAD_ID) != 0) return host->fail(host, CALX_E_UNSUPPORTED, "this library holds another plugin");
   BAD_CREATE;
 }
 static void CALX_CALL destroy(calx_instance* instance) { (void)instance; }
@@ -91,8 +92,13 @@ static calx_status CALX_CALL init(const calx_host* host, const char* plugin_dir)
 static void CALX_CALL deinit(void) { BAD_DEINIT; }
 static const void* CALX_CALL get_factory(const char* factory_id) {
   (void)factory;
+#ifdef BAD_ANY_ID
+  (void)factory_id;
+  return BAD_FACTORY;
+#else
   return strcmp(factory_id, CALX_FACTORY) == 0 ? BAD_FACTORY : 0;
+#endif
 }
 
-CALX_EXPORT const calx_entry calx_plugin_entry = {BAD_MAGIC, BAD_MAJOR, CALX_ABI_MINOR, BAD_ENTRY_SIZE,
-                                                  0,         init,      deinit,         get_factory};
+const calx_entry calx_plugin_entry = {BAD_MAGIC, BAD_MAJOR, CALX_ABI_MINOR, BAD_ENTRY_SIZE,
+                                      0,         init,      deinit,         get_factory};

@@ -8,7 +8,7 @@ from check import files, main, relative
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Headers of the compiler and of POSIX; everything else that is not C++'s own belongs to the table.
 SYSTEM = re.compile(r"^(sys/\w+|unistd|fcntl|dlfcn|signal|poll|xmmintrin|immintrin|stddef|stdint|math|string|stdio|"
-                    r"stdlib|float|limits|errno|time)\.h$")
+                    r"stdlib|float|limits|errno|time|elf)\.h$")
 
 
 def table(root):

@@ -17,7 +17,7 @@ mv "$scratch/first" "$scratch/prefix"
 prefix=$scratch/prefix
 unset CALX_PLUGIN_PATH
 
-for file in bin/calx include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
+for file in bin/calx share/calx/template/sensor/CMakeLists.txt include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
   [[ -e $prefix/$file ]] || fail "$file is not installed"
 done
 if grep -rIl -e "$build" -e "$root" -e "$scratch/first" "$prefix"; then fail "the files above name the build machine"; fi
@@ -40,7 +40,16 @@ python3 "$root/tests/hygiene/exports.py" "$scratch/law/build/plugins"
   fail "calx plugin describe org.example.spring"
 grep -q 'normal stiffness' "$scratch/describe.txt" || fail "calx plugin describe org.example.spring does not show its parameters"
 
-# It runs on every device of the machine, to the bits of its native code; a device that is not there is named and skipped.
+# A plugin of the templates, begun, built and checked with what is installed alone.
+"$prefix/bin/calx" plugin new my-force --kind particle-force --in "$scratch" >"$scratch/new.log"
+{ cmake -S "$scratch/my-force" -B "$scratch/my-force/build" -DCMAKE_PREFIX_PATH="$prefix" &&
+  cmake --build "$scratch/my-force/build" &&
+  ctest --test-dir "$scratch/my-force/build" --output-on-failure --no-tests=error; } >>"$scratch/new.log" 2>&1 ||
+  fail "calx plugin new: $(cat "$scratch/new.log")"
+"$prefix/bin/calx" plugin check "$prefix/lib/calx/plugins" --only creates >"$scratch/creates.txt" ||
+  fail "calx plugin check of the installed plugins: $(grep -A1 FAILED "$scratch/creates.txt")"
+
+# The law runs on every device of the machine, to the bits of its native code; a device that is not there is named and skipped.
 env PYTHONDONTWRITEBYTECODE=1 CALX="$prefix/bin/calx" CALX_PLUGINS="$prefix/lib/calx/plugins" CALX_SOURCE="$root" \
   CALX_LAW="$scratch/law/build/plugins" CALX_DEVICE_CACHE="$scratch/device_cache" \
   CALX_STAND_IN_CUDA="$build/tests/compute/libcalx_stand_in_cuda.so" \

@@ -59,7 +59,7 @@ CALX_FN void CALX_ID(calx_roll)(const CALX_ID(calx_contact) * c, const real roll
   const real cr = c_given * r2 + R(2.0) * eta * calx_sqrt(R(1.4) * mr2 * kr);
   /* Type a below its cap: 2/5 m r^2 / dt would stop the spin in one step; an eighth, so that eight contacts may act. */
   const real steady = calx_min(type_a, R(1.0));
-  const real brake = steady * R(0.05) * mr2 / c->dt;
+  const real brake = steady * R(0.05) * mr2 / calx_max(c->dt, tiny);
   const real roll2 = wx * wx + wy * wy + wz * wz;
   const real share = type_a > R(1.5) ? calx_sqrt(roll2 / calx_max(roll2 + wn * wn, tiny)) : R(1.0);
   const real cap = rolling_friction * c->r_eff * fn * share;

@@ -1,4 +1,4 @@
-/* broken.law.h: a law that breaks the dialect on purpose, once on each line marked so; see abi_law_lint_reports. */
+/* broken.law.h: a law that breaks the dialect on purpose, once on each line marked so. */
 #define broken_pair_LIST(X) X(kn, "N/m", 0, 1e9, 1e4, 0, "normal stiffness")
 #define broken_prop_LIST(X)
 #define broken_state_LIST(X) X(memory, "m", 0, 1, 0, 0, "largest overlap")

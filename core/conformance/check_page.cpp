@@ -1,0 +1,126 @@
+// check_page.cpp: the result of the checks as text, as JSON and as a page with the curves of a law.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "conformance/conformance.hpp"
+#include "report/page.hpp"
+
+namespace calx {
+namespace {
+
+const char* word(CheckOutcome outcome) {
+  return outcome == CheckOutcome::passed ? "passed" : outcome == CheckOutcome::failed ? "FAILED" : "skipped";
+}
+
+std::string totals(const CheckReport& report) {
+  return std::to_string(report.count(CheckOutcome::passed)) + " passed, " +
+         std::to_string(report.count(CheckOutcome::failed)) + " failed, " +
+         std::to_string(report.count(CheckOutcome::skipped)) + " skipped; seed " + std::to_string(report.seed);
+}
+
+Chart chart_of(const std::string& which) {
+  Chart chart;
+  if (which == "normal") {
+    chart.title = "Force over overlap";
+    chart.caption = "Two spheres of 1 mm radius and 2500 kg/m^3, pressed slowly and released; presets of the pair.";
+    chart.x = {"overlap", "m", true, {}};
+    chart.y = {"normal force", "N", false, {}};
+  } else if (which == "restitution") {
+    chart.title = "Restitution over speed";
+    chart.caption = "Head-on impacts of two such spheres; 0: they stay together.";
+    chart.x = {"speed before", "m/s", true, {}};
+    chart.y = {"speed after over before", "1", true, {}};
+  } else {
+    chart.title = "Tangential loop";
+    chart.caption = "Pressed to half of the overlap of an impact at 0.1 m/s, then sheared to and fro.";
+    chart.x = {"tangential displacement", "m", false, {}};
+    chart.y = {"tangential force", "N", false, {}};
+  }
+  return chart;
+}
+
+std::string charts(Page& page, const std::vector<CheckCurve>& curves) {
+  std::string out;
+  for (const char* which : {"normal", "restitution", "tangential"}) {
+    Chart chart = chart_of(which);
+    for (const CheckCurve& curve : curves) {
+      if (curve.chart != which) continue;
+      ChartSeries series;
+      series.name = curve.name;
+      series.x = curve.x;
+      series.y = curve.y;
+      chart.series.push_back(series);
+    }
+    if (!chart.series.empty()) out += page.chart(chart);
+  }
+  return out.empty() ? "" : "<div class=\"charts\">" + out + "</div>";
+}
+
+}  // namespace
+
+std::string check_text(const CheckReport& report, bool all) {
+  std::size_t width = 0;
+  for (const CheckedManifest& manifest : report.manifests)
+    for (const CheckResult& result : manifest.results) width = std::max(width, result.name.size());
+  std::string out;
+  for (const CheckedManifest& manifest : report.manifests) {
+    std::string subject;
+    for (const CheckResult& result : manifest.results) {
+      if (!all && result.outcome != CheckOutcome::failed) continue;
+      if (result.subject != subject) out += result.subject + "\n";
+      subject = result.subject;
+      out += std::string("  ") + word(result.outcome) + "  " + result.name;
+      out.append(width - result.name.size() + 2, ' ');
+      out += result.meaning + "\n";
+      if (!result.detail.empty()) out += "           " + result.detail + "\n";
+    }
+  }
+  return out + totals(report) + "\n";
+}
+
+std::string check_json(const CheckReport& report) {
+  using nlohmann::json;
+  json out = {{"seed", report.seed},
+              {"passed", report.count(CheckOutcome::passed)},
+              {"failed", report.count(CheckOutcome::failed)},
+              {"skipped", report.count(CheckOutcome::skipped)},
+              {"manifests", json::array()}};
+  for (const CheckedManifest& manifest : report.manifests) {
+    json checks = json::array();
+    for (const CheckResult& result : manifest.results)
+      checks.push_back({{"name", result.name},
+                        {"meaning", result.meaning},
+                        {"subject", result.subject},
+                        {"outcome", result.outcome == CheckOutcome::failed ? "failed" : word(result.outcome)},
+                        {"detail", result.detail}});
+    out["manifests"].push_back({{"path", manifest.path}, {"checks", checks}});
+  }
+  return out.dump(2, ' ', true, json::error_handler_t::replace) + "\n";
+}
+
+void write_check_page(const CheckReport& report, const std::string& file) {
+  Page page("calx plugin check");
+  page.header("<h1>Plugin check</h1><p>" + html_text(totals(report)) + ". Calx " + html_text(version()) + ".</p>");
+  std::size_t number = 0;
+  for (const CheckedManifest& manifest : report.manifests) {
+    std::vector<std::vector<std::string>> rows = {{"check", "of", "outcome", "meaning", "found"}};
+    for (const CheckResult& result : manifest.results)
+      rows.push_back({html_text(result.name), html_text(result.subject),
+                      result.outcome == CheckOutcome::failed ? "<strong>failed</strong>" : word(result.outcome),
+                      html_text(result.meaning), html_text(result.detail)});
+    const std::string name = std::filesystem::path(manifest.path).filename().string();
+    const std::string head = name.substr(0, name.find(".plugin.json"));
+    page.section(
+        "manifest" + std::to_string(number++), html_text(head), head,
+        charts(page, manifest.curves) + html_table(rows, rows[0].size()) + "<p>" + html_text(manifest.path) + "</p>");
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << page.html();
+  if (!out.flush()) throw Error(Fault::files, file + " cannot be written");
+}
+
+}  // namespace calx

@@ -1,0 +1,96 @@
+// new_plugin.cpp: a project from the templates of abi/template, which are plugins themselves, called my-plugin.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "base/nearest.hpp"
+#include "conformance/conformance.hpp"
+
+namespace calx {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// wet-hertz -> wet_hertz and WetHertz.
+std::string symbol_of(const std::string& name) { return replaced(name, "-", "_"); }
+std::string class_of(const std::string& name) {
+  std::string out;
+  bool upper = true;
+  for (const char c : name) {
+    if (c != '-') out += upper && c >= 'a' ? static_cast<char>(c - 32) : c;
+    upper = c == '-';
+  }
+  return out;
+}
+
+std::string renamed(const std::string& text, const std::string& name) {
+  return replaced(replaced(replaced(text, "my_plugin", symbol_of(name)), "MyPlugin", class_of(name)), "my-plugin",
+                  name);
+}
+
+/// In an installation and in a build tree the templates lie at the same place beside the program.
+fs::path template_folder(const std::string& kind) {
+  std::error_code bad;
+  const fs::path program = fs::read_symlink("/proc/self/exe", bad);
+  const fs::path folder = program.parent_path() / ".." / "share" / "calx" / "template" / kind;
+  if (!fs::is_directory(folder, bad))
+    throw Error(Fault::files, folder.lexically_normal().string() +
+                                  ": the templates of plugins are not there; they are installed with Calx, "
+                                  "cmake --install BUILD --component abi");
+  return folder;
+}
+
+void check_name(const std::string& name) {
+  const bool letters = name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos;
+  const bool begins = !name.empty() && name.front() >= 'a' && name.front() <= 'z' && name.back() != '-';
+  if (letters && begins && name.find("--") == std::string::npos && name.size() <= 40) return;
+  throw Error(Fault::usage,
+              "plugin new " + name +
+                  ": a name is made of lower-case letters, digits and single -, begins with a letter and has at "
+                  "most 40 characters, as in wet-hertz");
+}
+
+}  // namespace
+
+std::vector<std::string> new_plugin_kinds() {
+  return {"contact-law", "geometry", "motion", "particle-force", "sensor"};
+}
+
+std::vector<std::string> new_plugin(const std::string& name, const std::string& kind, const std::string& folder) {
+  check_name(name);
+  const std::vector<std::string> kinds = new_plugin_kinds();
+  if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+    throw Error(Fault::usage, "--kind " + kind + ": no such kind; " + did_you_mean(kind, kinds));
+  std::error_code bad;
+  if (!fs::is_directory(folder, bad)) throw Error(Fault::files, folder + ": no such folder");
+  const fs::path project = fs::path(folder) / name;
+  if (fs::exists(fs::symlink_status(project, bad)))
+    throw Error(Fault::files,
+                project.string() + " is there already and is left as it is; take another name, or remove it");
+
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(template_folder(kind))) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  if (!fs::create_directory(project, bad)) throw Error(Fault::files, project.string() + ": " + bad.message());
+  std::vector<std::string> written;
+  for (const fs::path& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(in)), {});
+    const fs::path to = project / renamed(file.filename().string(), name);
+    std::ofstream out(to, std::ios::binary);
+    out << renamed(text, name);
+    if (!out.flush()) throw Error(Fault::files, to.string() + " cannot be written");
+    written.push_back(to.string());
+  }
+  return written;
+}
+
+}  // namespace calx
