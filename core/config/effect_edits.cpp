@@ -8,8 +8,8 @@
 //   {"op": "carry", "part": P, "motion": M}          motion M is applied on top of all that moves part P
 // and may hold "unless_off": true, which leaves it out while every amplitude is off. {NAME} stands for a role's name or
 // a parameter's number; a list of named objects is entered by name; "A|B" is the contact between two materials, whose
-// "law" becomes "laws" where an edit goes on to these. {"$copy": POINTER} copies a value of the case and
-// {"$bounds": REGION, "corner": "min"} gives a corner of the box round a region.
+// "law" becomes "laws" where an edit goes on to these. {"$copy": POINTER or a list of them} copies the first value that
+// the case has; {"$bounds": REGION, "corner": "min"} gives a corner of the box round a region.
 #include "config/effect_edits.hpp"
 
 #include <algorithm>
@@ -92,10 +92,11 @@ class Editor {
       return name_filled(text);
     }
     if (value.is_object() && value.count("$copy")) {
-      const Json* found = find(value["$copy"], false);
-      if (found) return *found;
+      const Json places = value["$copy"].is_array() ? value["$copy"] : Json::array({value["$copy"]});
+      for (const Json& place : places)
+        if (const Json* found = find(place, false)) return *found;
       if (value.value("optional", false)) return nullptr;
-      fail("the case has no " + name_filled(value["$copy"]));
+      fail("the case has no " + name_filled(places.back()));
     }
     if (value.is_object() && value.count("$bounds")) return corner(value);
     Json out = value.is_array() ? Json::array() : Json::object();

@@ -105,6 +105,7 @@ TEST_CASE("a tilt carries the motion that the canister has") {
   CHECK(c["parts"][4]["motion"] == "shake");
   CHECK(c["motions"]["shake"]["carried_by"] == "tilt of canister");
   CHECK(c["motions"]["tilt of canister"]["parameters"]["tilt_deg"] == 2);
+  CHECK(c["motions"]["tilt of canister"]["parameters"]["pivot"] == Json::parse("[0, 0, 0]"));  // "from" of the cylinder
 }
 
 TEST_CASE("a leak lets grains through a rotor that stands still, a gap below a grain does not") {
