@@ -15,6 +15,7 @@ namespace {
 struct Scene {
   std::vector<std::uint32_t> id;
   std::vector<double> column[11];
+  double reading = 0.25;  // of another sensor; instruments look at nothing else, others do not look at it
   calx_sensor_view view{};
 
   Scene(Subject& s, std::size_t count, double time) {
@@ -25,8 +26,8 @@ struct Scene {
       column[10].push_back(s.uniform(5e-4, 2e-3));
     }
     const auto at = [&](int c) { return column[c].data(); };
-    view = {sizeof view, 0,     count, time,  id.data(), at(0), at(1), at(2),
-            at(3),       at(4), at(5), at(6), at(7),     at(8), at(9), at(10)};
+    view = {sizeof view, 0,     count, time,  id.data(), at(0), at(1),  at(2),    at(3),
+            at(4),       at(5), at(6), at(7), at(8),     at(9), at(10), &reading, 1};
   }
   std::string bytes() const {
     std::string out(reinterpret_cast<const char*>(id.data()), id.size() * sizeof(std::uint32_t));

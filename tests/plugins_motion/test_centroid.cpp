@@ -15,8 +15,24 @@ std::vector<double> sample(const LoadedPlugin& p, const std::vector<double>& x, 
   std::vector<std::uint32_t> ids;
   for (std::size_t k = 0; k < x.size(); ++k) ids.push_back(static_cast<std::uint32_t>(k));
   const double* o = zero.data();
-  const calx_sensor_view view = {
-      sizeof(calx_sensor_view), 0, x.size(), 1.5, ids.data(), x.data(), o, z.data(), o, o, o, o, o, o, mass.data(), o};
+  const calx_sensor_view view = {sizeof(calx_sensor_view),
+                                 0,
+                                 x.size(),
+                                 1.5,
+                                 ids.data(),
+                                 x.data(),
+                                 o,
+                                 z.data(),
+                                 o,
+                                 o,
+                                 o,
+                                 o,
+                                 o,
+                                 o,
+                                 mass.data(),
+                                 o,
+                                 nullptr,
+                                 0};
   const calx_sensor* table = p.table<calx_sensor>(CALX_SENSOR);
   std::vector<double> out(table->output_count, -1);
   REQUIRE(table->sample(p.instance(), p.host(), &view, out.data()) == CALX_OK);
