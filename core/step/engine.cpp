@@ -78,7 +78,7 @@ void Engine::inserted() {
 void Engine::edited() {
   if (particles.has_clumps) particles.refresh_members(0, particles.count());
   stale_ = true;
-  if (device_) device_->host_changed();
+  if (device_) device_->particles_changed();
 }
 
 void Engine::remove(const std::vector<std::uint8_t>& mark, double dt) {
