@@ -69,12 +69,13 @@ struct Engine::OnDevice {
   void launch_rest_of_step(const Numbers& n);
   void launch_integration(const Numbers& n);
   Outcome take_flags();
-  // on_device_lists.cpp
+  // on_device_order.cpp
   void wrap(const Numbers& n);
   void sort_particles(const Numbers& n);
   void reorder(const DeviceBuffer& buffer, const DeviceBuffer& order, std::size_t rows, std::size_t bytes);
   /// Launches join_extents until one is left; which of the two buffers it is in.
   const DeviceBuffer& join_extents(std::size_t runs);
+  // on_device_lists.cpp
   std::size_t make_levels(const Numbers& n, Vec3& origin);
   void search_pairs(const Numbers& n);
   void link_entries(const Numbers& n);

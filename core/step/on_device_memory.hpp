@@ -20,6 +20,15 @@ enum DeviceFlag {
   flag_count
 };
 
+/// extent of order.h.
+struct DeviceExtent {
+  Vec3 low, high;            // m
+  double smallest, largest;  // reach, m
+};
+static_assert(sizeof(DeviceExtent) == 64);
+/// Runs of EXTENT_RUN or WRAP_SPAN of order.h.
+inline std::size_t runs_of(std::size_t n) { return (n + 63) / 64; }
+
 /// step_numbers of world.h.
 struct Engine::OnDevice::Numbers {
   double dt, overlap_limit;

@@ -283,3 +283,32 @@ TEST_CASE("a checkpoint of other events is refused by name") {
           std::string::npos);
   }
 }
+
+TEST_CASE("nothing is missed between two updates as long as the set is still") {
+  FakeView view;
+  EventSet set({{"open", at_time(0.5)},
+                {"after", after("open", 0.2)},
+                {"turned", reaches(Kind::cycle, 2, "rotor")},
+                {"full", joined(Kind::all, {after("turned"), reaches(Kind::mass, 1, "bin")})}},
+               0.01);
+  const auto cycles = [](const std::string& motion, double t) { return motion == "rotor" ? t / 0.3 : 0; };
+  set.update(0, view);
+  CHECK(set.still(0, 0.009, cycles));
+  CHECK_FALSE(set.still(0, 0.011, cycles));  // the mass is due to be asked
+  const int looks = view.looks;
+  set.update(0.495, view);
+  CHECK(set.still(0.495, 0.499, cycles));
+  CHECK_FALSE(set.still(0.495, 0.5, cycles));  // "open"
+  set.update(0.5, view);
+  CHECK(set.fired("open"));
+  set.update(0.595, view);
+  CHECK(set.still(0.595, 0.599, cycles));
+  CHECK_FALSE(set.still(0.595, 0.601, cycles));  // the second cycle ends at 0.6
+  view.cycles = 2;
+  set.update(0.6, view);
+  CHECK(set.fired("turned"));
+  set.update(0.695, view);
+  CHECK(set.still(0.695, 0.699, cycles));
+  CHECK_FALSE(set.still(0.695, 0.705, cycles));  // "after", 0.2 s after "open"
+  CHECK(view.looks > looks);
+}
