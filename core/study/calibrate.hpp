@@ -1,7 +1,6 @@
 // calibrate.hpp: from a study to what its data say of its parameters. Some 20 to 300 runs; the algebra takes seconds.
 #pragma once
 #include <Eigen/Dense>
-#include <memory>
 #include <string>
 #include <vector>
 

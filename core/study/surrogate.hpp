@@ -3,7 +3,6 @@
 #pragma once
 #include <Eigen/Dense>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "infer/curve_basis.hpp"
