@@ -44,9 +44,16 @@ PluginLibrary::PluginLibrary(const PluginManifest& manifest, const std::string& 
     throw Refused{path_ + " has SHA-256 " + sha256_ + ", but its manifest says " + manifest.sha256};
   if (!pin.empty() && pin != sha256_) throw Refused{path_ + " has SHA-256 " + sha256_ + ", but the case pins " + pin};
   entry_ = &file.load();
-  check_entry();
+  start(std::filesystem::path(path_).parent_path().string());
+}
 
-  const std::string folder = std::filesystem::path(path_).parent_path().string();
+PluginLibrary::PluginLibrary(const calx_entry& entry, const std::string& name)
+    : path_(name), host_(name), entry_(&entry) {
+  start("");
+}
+
+void PluginLibrary::start(const std::string& folder) {
+  check_entry();
   const calx_status status = guarded(path_, "init", [&] { return entry_->init(host_.table(), folder.c_str()); });
   if (status < 0)
     throw Refused{path_ + ": init failed with " + status_name(status) + ": " + host_.take_message(status)};
@@ -126,6 +133,13 @@ const calx_descriptor& PluginLibrary::descriptor(const PluginManifest& manifest)
                     ", which this host lacks; it has " + quoted_list(offered)};
   }
   return d;
+}
+
+std::vector<PluginManifest> PluginLibrary::own_manifests() const {
+  std::vector<PluginManifest> out;
+  for (const calx_descriptor* d : descriptors_)
+    out.push_back({d->id, d->kind, d->version, d->license, d->summary, path_, path_, sha256_, ""});
+  return out;
 }
 
 calx_status PluginLibrary::create(const calx_descriptor& descriptor, const calx_config& config, calx_instance** out) {

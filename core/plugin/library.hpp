@@ -14,6 +14,8 @@ class PluginLibrary {
  public:
   /// pin: SHA-256 the case asks for, or empty. Throws Refused.
   PluginLibrary(const PluginManifest& manifest, const std::string& pin);
+  /// One that lives in this program; name stands in messages. Throws Refused.
+  PluginLibrary(const calx_entry& entry, const std::string& name);
   /// One deinit for the one init; the plugin counts them when several simulations share it.
   ~PluginLibrary();
   PluginLibrary(const PluginLibrary&) = delete;
@@ -29,8 +31,11 @@ class PluginLibrary {
   /// Null out with a negative status: see host().take_message(). Throws Refused when the plugin changed the
   /// floating-point mode or reported success without an instance.
   calx_status create(const calx_descriptor& descriptor, const calx_config& config, calx_instance** out);
+  /// What a manifest would say of a plugin that has none.
+  std::vector<PluginManifest> own_manifests() const;
 
  private:
+  void start(const std::string& folder);
   void check_entry() const;
   void read_factory();
 

@@ -68,6 +68,10 @@ class PluginRegistry {
                           std::vector<std::pair<std::string, std::string>> pins = {});
   ~PluginRegistry();
 
+  /// Plugins that live in this program, before any of the same id in a folder; entry outlives the registry. name stands
+  /// in messages, as a path does for others. Throws Error(Fault::plugin) where it is refused.
+  void add(const calx_entry& entry, const std::string& name);
+
   /// Loads the library of id if needed, in the order of ABI.md section 3 (manifest, load, symbol, magic, major, sizes,
   /// init, factory, descriptors, required extensions), and returns its descriptor. pointer: JSON pointer where the case
   /// names it. Throws Error(Fault::plugin): not found (nearest id and the folders searched), refused (why), wrong kind.

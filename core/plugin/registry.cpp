@@ -101,6 +101,17 @@ PluginRegistry::PluginRegistry(const std::vector<std::string>& search,
 
 PluginRegistry::~PluginRegistry() = default;
 
+void PluginRegistry::add(const calx_entry& entry, const std::string& name) {
+  try {
+    const auto library = std::make_shared<PluginLibrary>(entry, name);
+    impl_->libraries.emplace(name, library);
+    const std::vector<PluginManifest> own = library->own_manifests();
+    impl_->manifests.insert(impl_->manifests.begin(), own.begin(), own.end());
+  } catch (const Refused& refused) {
+    throw Error(Fault::plugin, "refused: " + refused.reason);
+  }
+}
+
 const calx_descriptor& PluginRegistry::load(const std::string& id, const std::string& kind, const std::string& file,
                                             const std::string& pointer) {
   return *impl_->load(id, kind, place(file, pointer)).descriptor;

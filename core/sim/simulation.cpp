@@ -204,6 +204,8 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options)
     : impl_(std::make_unique<Impl>(std::move(input))) {
   World& w = impl_->w;
   w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins);
+  for (const calx_entry* entry : options.plugins)
+    w.registry->add(*entry, "plugin " + std::to_string(&entry - options.plugins.data()) + " of this program");
   build_shapes(w);
   w.laws = load_laws(w.c, *w.registry);
   build_motions(w);
@@ -241,6 +243,30 @@ StepLimit Simulation::law_limit_seen() const {
   return law_limit_at(step_inputs(impl_->w), impl_->w.engine.largest_overlap());
 }
 std::vector<std::unique_ptr<Sensor>>& Simulation::sensors() { return impl_->w.sensors; }
+Particles& Simulation::edit_particles() {
+  impl_->w.engine.fetch();
+  return impl_->w.engine.particles;
+}
+
+void Simulation::particles_written() {
+  World& w = impl_->w;
+  if (w.c.rest.on)
+    throw Error(Fault::settings, w.c.file + " /rest: particles of a case with \"rest\" cannot be written from outside");
+  const Particles& p = w.engine.particles;
+  for (std::size_t k = 0; k < p.count(); ++k) {
+    const Record& b = p.body[k];
+    if (!std::isfinite(norm2(position(b)) + norm2(velocity(b)) + norm2(spin(b))))
+      throw Error(Fault::numerics, "particle " + std::to_string(p.id[k]) + " was written a number that is not finite");
+  }
+  w.engine.edited();
+}
+
+void Simulation::drive_part(std::size_t part, const Pose& pose) {
+  World& w = impl_->w;
+  w.walls.at(part).driven = pose;
+  w.place_parts(w.now);
+}
+
 std::vector<PluginProvenance> Simulation::provenance() const { return impl_->w.registry->provenance(); }
 std::size_t Simulation::memory_bytes() const { return impl_->w.engine.memory_bytes(); }
 std::vector<std::string> Simulation::presets() const { return impl_->w.laws.presets; }

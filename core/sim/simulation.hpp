@@ -17,6 +17,7 @@ struct SimulationOptions {
   std::string device = "cpu";  // "auto", "cpu", "opencl", "cuda" or "host", the last three also with ":ordinal"
   bool fast = false;           // devices may contract a * b + c: other last digits than the processor's
   std::vector<std::string> plugin_path;
+  std::vector<const calx_entry*> plugins;  // in this program; used before any of the same id in a folder
 };
 
 /// One time-step limit and where it comes from.
@@ -54,6 +55,13 @@ class Simulation {
   void step();
 
   std::vector<std::unique_ptr<Sensor>>& sensors();
+  /// Particles to be written from outside between steps (position, velocity, spin, turn; nothing may come or go).
+  /// particles_written must follow before the next step: it throws Error(Fault::settings) in a case with "rest" and
+  /// Error(Fault::numerics) for a number that is not finite.
+  Particles& edit_particles();
+  void particles_written();
+  /// The caller moves a part from now on: its pose at the contacts of the next steps, until it is set anew.
+  void drive_part(std::size_t part, const Pose& pose);
   std::vector<PluginProvenance> provenance() const;
   /// Bytes of all arrays that grow with the number of particles and contacts.
   std::size_t memory_bytes() const;

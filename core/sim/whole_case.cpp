@@ -5,7 +5,10 @@
 namespace calx {
 
 CaseFile read_whole_case(const RunOptions& options) {
-  CaseFile file = read_case(options.case_path, options.overrides);
+  return whole_case(read_case(options.case_path, options.overrides));
+}
+
+CaseFile whole_case(CaseFile file) {
   const CaseSettings& c = file.settings;
   const auto need = [&](const std::string& a, const std::string& b, const std::string& who) {
     for (const auto& contact : c.contacts)

@@ -1,11 +1,13 @@
-// whole_case.hpp: a case read for a run. Private to sim/.
+// whole_case.hpp: a case read for a run.
 #pragma once
 #include "config/config.hpp"
 #include "sim/run.hpp"
 
 namespace calx {
 
-/// The case, whose materials that can meet all have a contact: without one they would pass through each other.
+/// The case itself, if all materials that can meet have a contact: without one they would pass through each other.
+/// Throws Error(Fault::settings).
+CaseFile whole_case(CaseFile file);
 CaseFile read_whole_case(const RunOptions& options);
 
 }  // namespace calx

@@ -212,6 +212,11 @@ double World::potential(std::size_t p) const {
 
 void World::place_parts(double t) {
   for (std::size_t k = 0; k < walls.size(); ++k) {
+    if (walls[k].driven) {
+      engine.parts[k].pose = *walls[k].driven;
+      engine.parts[k].moves = true;
+      continue;
+    }
     if (walls[k].motion < 0) continue;
     engine.parts[k].pose = motions.pose(walls[k].motion, t);
     engine.parts[k].moves =

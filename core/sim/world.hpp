@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct WorldPart {
   InstancePtr instance;
   std::unique_ptr<Surface> surface;
   int motion = -1;
+  std::optional<Pose> driven;  // by the program around this simulation, instead of the motion
 };
 
 struct World final : WorldView, EventView {

@@ -77,6 +77,12 @@ void Engine::inserted() {
   stale_ = count_changed_ = true;
 }
 
+void Engine::edited() {
+  if (particles.has_clumps) particles.refresh_members(0, particles.count());
+  stale_ = true;
+  if (device_) device_->host_changed();
+}
+
 void Engine::remove(const std::vector<std::uint8_t>& mark, double dt) {
   fetch();
   if (rest_) rest_leave(mark, dt);

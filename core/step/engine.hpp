@@ -107,6 +107,8 @@ class Engine {
 
   /// Tells the engine that particles were appended since the last step.
   void inserted();
+  /// Tells the engine that positions, velocities, spins or turns were written from outside. Not with rest.
+  void edited();
   /// Removes the particles marked (rank order) and builds the lists anew.
   void remove(const std::vector<std::uint8_t>& mark, double dt);
 

@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "base/error.hpp"
 #include "io/io.hpp"
@@ -153,14 +152,16 @@ class CachedExecutor : public Executor {
       fs::rename(part(key), folder(key));
       return finished(key, false);
     }
-    launcher_failure(e, said);
+    end_study(e, said);
     RunResult out;
     out.error = e.code < 0 ? e.lost : said;
+    // Gone, so that the run is begun anew when it is asked for again.
+    fs::remove_all(part(key));
     return out;
   }
 
   /// What would fail in the same way for every run ends the study.
-  void launcher_failure(const Ended& e, const std::string& said) {
+  void end_study(const Ended& e, const std::string& said) {
     for (const Fault fault : {Fault::usage, Fault::settings, Fault::plugin, Fault::files})
       if (e.code == static_cast<int>(fault)) {
         launcher_->stop();

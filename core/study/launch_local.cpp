@@ -29,7 +29,9 @@ class LocalLauncher : public Launcher {
 
   void start(const std::string& folder) override {
     // Everything that allocates happens before the fork.
-    const std::vector<std::string> words = run_command(settings_, folder);
+    std::vector<std::string> words = run_command(settings_, folder);
+    // The very program that is running, even when a new build has taken its place in the meantime.
+    if (settings_.program.empty()) words[0] = "/proc/self/exe";
     std::vector<char*> arguments;
     for (const std::string& w : words) arguments.push_back(const_cast<char*>(w.c_str()));
     arguments.push_back(nullptr);

@@ -2,6 +2,7 @@
 // nodes share. Jobs outlive a killed study; the next one finds them by the number in their folder and waits for them.
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -71,7 +72,11 @@ class SlurmLauncher : public Launcher {
     words.insert(words.end(), settings_.slurm.begin(), settings_.slurm.end());
     words.push_back(folder + "/job.sh");
     const Answer answer = ask(words);
-    if (answer.status != 0) throw Error(Fault::files, "sbatch refused a run: " + answer.text);
+    if (answer.status != 0) {
+      std::string why = answer.text;
+      std::replace(why.begin(), why.end(), '\n', ' ');
+      throw Error(Fault::files, "sbatch refused a run: " + why);
+    }
     // "12" or "12;cluster", after warnings if any.
     std::string id = answer.text.substr(answer.text.rfind('\n') + 1);
     id = id.substr(0, id.find(';'));

@@ -11,10 +11,12 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "bench.hpp"
+#include "calibrate.hpp"
 #include "calx/abi.h"
 #include "options.hpp"
 #include "plugin/plugin.hpp"
 #include "progress.hpp"
+#include "report/calibration_page.hpp"
 #include "report/report.hpp"
 #include "sim/run.hpp"
 
@@ -24,6 +26,11 @@ std::atomic<bool> stop_requested{false};
 void on_signal(int) {
   // A second Ctrl-C ends the program at once.
   if (stop_requested.exchange(true)) _exit(130);
+}
+
+void catch_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
 }
 
 /// "/time/end=2.0" -> pointer and value.
@@ -76,8 +83,7 @@ int run(CaseFlags& flags) {
   options.progress = [&](const calx::RunProgress& p) { progress.show(p); };
   options.message = [&](const std::string& line) { progress.message(line); };
   options.stop = &stop_requested;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  catch_signals();
   // A full disk shows as an error of the write, not as the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
   const std::string folder = calx::run_folder(options);
@@ -178,6 +184,10 @@ int main(int argc, char** argv) {
   report_command->add_option("dir", report_folder, "folder of the run")->required();
   report_command->callback([&] {
     namespace fs = std::filesystem;
+    if (fs::exists(report_folder + "/calibration.json")) {
+      std::printf("%s\n", calx::write_calibration_report(report_folder).c_str());
+      return;
+    }
     if (fs::is_directory(report_folder) && !fs::exists(report_folder + "/case.json") &&
         !fs::exists(report_folder + "/summary.json"))
       throw calx::Error(calx::Fault::files, report_folder +
@@ -207,5 +217,6 @@ int main(int argc, char** argv) {
     command->add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
 
   calx::add_bench_command(app);
+  calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);
   return guarded(app, run_flags.json, argc, argv);
 }

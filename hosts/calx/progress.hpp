@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sim/run.hpp"
+#include "study/executor.hpp"
 
 namespace calx {
 
@@ -33,21 +34,25 @@ class Progress {
  public:
   Progress(bool quiet, bool json) : quiet_(quiet), json_(json), terminal_(!json && isatty(2)) {}
   void show(const RunProgress& p) {
-    if (quiet_) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ && now - last_ < std::chrono::seconds(5)) return;
-    last_ = now;
+    if (!due()) return;
     if (json_) {
       std::fprintf(stderr,
                    "{\"event\": \"progress\", \"time\": %.9g, \"end\": %.9g, \"share\": %.4f, \"particles\": %zu, "
                    "\"particle_steps_per_second\": %.6g, \"seconds_left\": %.6g}\n",
                    p.time, p.end, p.share, p.particles, p.particle_steps_per_second, p.seconds_left);
-    } else if (terminal_) {
-      std::fprintf(stderr, "\r\033[K%s", p.text.c_str());
-      open_ = true;
     } else {
-      std::fprintf(stderr, "%s\n", p.text.c_str());
+      line(p.text);
     }
+  }
+  void show(const StudyProgress& p) {
+    if (!due()) return;
+    if (json_)
+      std::fprintf(
+          stderr,
+          "{\"event\": \"progress\", \"done\": %zu, \"total\": %zu, \"running\": %zu, \"seconds_left\": %.6g}\n",
+          p.done, p.total, p.running, p.seconds_left);
+    else
+      line(p.text);
   }
   void message(const std::string& text) {
     if (quiet_) return;
@@ -64,6 +69,18 @@ class Progress {
   }
 
  private:
+  /// A terminal gets ten lines a second at most, anything else one every five seconds.
+  bool due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (quiet_ || now - last_ < std::chrono::milliseconds(terminal_ ? 100 : 5000)) return false;
+    last_ = now;
+    return true;
+  }
+  void line(const std::string& text) {
+    std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", text.c_str());
+    open_ = terminal_;
+  }
+
   bool quiet_, json_, terminal_, open_ = false;
   std::chrono::steady_clock::time_point last_{};
 };

@@ -165,7 +165,7 @@ def rest(table, options):
     table.add("B10 with rest on, late in a fill: at least 3 times off",
               [on / off for on, off in zip(rates["on"], rates["off"])], 3, "",
               note=f"{statistics.median(rates['on']) / 1e6:.2f} and {statistics.median(rates['off']) / 1e6:.2f} M/s; "
-                   f"canister {mass['on']} kg with, {mass['off']} kg without")
+                   f"canister {1e3 * mass['on']:.1f} g with, {1e3 * mass['off']:.1f} g without")
 
 
 def table(options, job, rounds, passing):

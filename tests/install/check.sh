@@ -49,4 +49,24 @@ env PYTHONDONTWRITEBYTECODE=1 CALX="$prefix/bin/calx" CALX_PLUGINS="$prefix/lib/
   fail "third-party law on devices: $(cat "$scratch/devices.txt")"
 grep -i 'skip' "$scratch/devices.txt" || true
 
-echo "installed, moved, $(grep -c . "$scratch/list.txt") lines of plugins, third-party law described and run on devices"
+# Programs around the library, against the installed package; the same bits as calx run.
+cmake -G "Unix Makefiles" -S "$root/examples/embed" -B "$scratch/embed" -DCMAKE_PREFIX_PATH="$prefix" >"$scratch/embed.log" 2>&1 &&
+  cmake --build "$scratch/embed" >>"$scratch/embed.log" 2>&1 || fail "examples/embed: $(cat "$scratch/embed.log")"
+if nm -D --defined-only "$prefix/lib/libcalx.so" | grep -v ' calx_sim_'; then fail "libcalx.so exports the names above"; fi
+case=$root/examples/two_balls.json
+mkdir "$scratch/state"
+"$prefix/bin/calx" run "$case" --until 0.1 --quiet --no-report -o "$scratch/run" >"$scratch/run.txt" 2>&1 || fail "$(cat "$scratch/run.txt")"
+for program in hopper turbine own_sensor "two_balls $case $scratch/state"; do
+  "$scratch/embed/"$program >"$scratch/out.txt" 2>"$scratch/err.txt" || fail "examples/embed: $program: $(cat "$scratch/err.txt")"
+  [[ ! -s $scratch/err.txt ]] || fail "examples/embed: $program writes to stderr"
+done
+digest=$(tail -1 "$scratch/out.txt")
+/usr/bin/python3 "$root/examples/embed/portal.py" "$prefix/lib/libcalx.so" "$case" >"$scratch/portal.txt" || fail "portal.py"
+[[ $(tail -1 "$scratch/portal.txt") == "$digest" ]] || fail "portal.py ends with other bits than two_balls.c"
+env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$root/tests/outside" CALX="$prefix/bin/calx" CALX_PLUGINS="$prefix/lib/calx/plugins" \
+  CALX_SOURCE="$root" \
+  /usr/bin/python3 -c 'import calx, sys; sys.exit([n for n in calx.differences(*sys.argv[1:]) if n[:7] != "sensors"] or None)' \
+  "$scratch/run/checkpoint.h5" "$scratch/state/checkpoint.h5" ||
+  fail "libcalx gives other bits than calx run"
+
+echo "installed, moved, $(grep -c . "$scratch/list.txt") lines of plugins, third-party law run on devices, programs around libcalx"

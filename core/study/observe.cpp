@@ -1,0 +1,91 @@
+#include "study/observe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "io/io.hpp"
+#include "study/column.hpp"
+
+namespace calx {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+Json read_json(const std::string& path) {
+  Json out = Json::parse(read_text(path), nullptr, false);
+  if (out.is_discarded()) throw Error(Fault::files, path + ": is not valid JSON");
+  return out;
+}
+
+double number(const Json& value) { return value.is_number() ? value.get<double>() : kNone; }
+
+struct Series {
+  std::vector<double> x, y;
+};
+
+bool curve_of_fields(const std::string& folder, const StudyObservable& o, Series& out) {
+  const Json fields = read_json(folder + "/fields.json");
+  for (const Json& c : fields["curves"]) {
+    if (c["sensor"] != o.sensor || c["x_name"] != o.against || c["y_name"] != o.column) continue;
+    for (const Json& v : c["x"]) out.x.push_back(number(v));
+    for (const Json& v : c["y"]) out.y.push_back(number(v));
+    return true;
+  }
+  return false;
+}
+
+Series series_of(const std::string& folder, const StudyObservable& o) {
+  const std::string path = folder + "/series/" + o.sensor + ".csv";
+  const Table table = parse_table(read_text(path), path);
+  const auto at = [&](const std::string& name) {
+    return std::find(table.columns.begin(), table.columns.end(), name) - table.columns.begin();
+  };
+  const auto x = static_cast<std::size_t>(at(o.against)), y = static_cast<std::size_t>(at(o.column));
+  Series out;
+  if (x >= table.columns.size() || y >= table.columns.size()) {
+    if (!curve_of_fields(folder, o, out))
+      throw Error(Fault::files, path + ": has no columns \"" + o.against + "\" and \"" + o.column + "\"");
+    return out;
+  }
+  for (const auto& row : table.rows) {
+    out.x.push_back(row[x]);
+    out.y.push_back(row[y]);
+  }
+  return out;
+}
+
+double passing(const Series& s, double x) {
+  for (std::size_t k = 0; k < s.x.size(); ++k) {
+    if (s.x[k] == x) return s.y[k];  // the very place, so that no neighbour is needed
+    if (k == 0 || !((s.x[k - 1] < x && x < s.x[k]) || (s.x[k] < x && x < s.x[k - 1]))) continue;
+    const double share = (x - s.x[k - 1]) / (s.x[k] - s.x[k - 1]);
+    return s.y[k - 1] + share * (s.y[k] - s.y[k - 1]);
+  }
+  // Samples are taken in the step nearest to their time, so that the last one of a run to 2 s may stand at 1.99999 s.
+  const std::size_t n = s.x.size();
+  if (n < 2) return kNone;
+  if (std::fabs(x - s.x[n - 1]) <= 0.5 * std::fabs(s.x[n - 1] - s.x[n - 2])) return s.y[n - 1];
+  if (std::fabs(x - s.x[0]) <= 0.5 * std::fabs(s.x[1] - s.x[0])) return s.y[0];
+  return kNone;
+}
+
+}  // namespace
+
+std::vector<double> observe(const std::string& folder, const StudyObservable& o) {
+  if (o.against.empty()) {
+    const Json summary = read_json(folder + "/summary.json");
+    const Json::json_pointer place = Json::json_pointer("/sensors") / o.sensor / "last" / o.column;
+    return {summary.contains(place) ? o.factor * number(summary[place]) : kNone};
+  }
+  const Series series = series_of(folder, o);
+  std::vector<double> out;
+  for (const double x : o.measured.x) out.push_back(o.factor * passing(series, x));
+  return out;
+}
+
+}  // namespace calx

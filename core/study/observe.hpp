@@ -1,0 +1,16 @@
+// observe.hpp: figures of a finished run, as a study's observables ask for them.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "study/study.hpp"
+
+namespace calx {
+
+/// The figures of the observable in the run's folder, in its unit: the last value for a scalar, else one for each
+/// measured x, interpolated where the series first passes it; beyond its ends by half a sample, the end. NaN where the
+/// run gives none (a series that ends before x, a pile that was never there). Reads summary.json, or series/SENSOR.csv,
+/// or a curve of fields.json. Throws Error(Fault::files) for a folder without them.
+std::vector<double> observe(const std::string& folder, const StudyObservable& observable);
+
+}  // namespace calx
