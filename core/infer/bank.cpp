@@ -11,7 +11,10 @@ namespace calx::infer {
 namespace {
 
 constexpr std::array<double, 5> strengths = {1, 2, 4, 8, 16};  // prior sd of a discrepancy, in declared sd
-constexpr double second_share = 0.4;                           // prior share of discrepancies in two blocks
+// Steps, teeth and waves along time are what wear, refills, shifts and weather do, and what a slow trend is mistaken
+// for: each gets about the prior of one effect of a library.
+constexpr double sudden_share = 0.5;
+constexpr double second_share = 0.4;  // prior share of discrepancies in two blocks
 
 /// Log odds of N(0, I + t^2 B B^T) for each strength t, from B^T B and B^T r.
 std::array<double, strengths.size()> odds_of(const Matrix& gram, const Vector& pull) {
@@ -29,24 +32,56 @@ std::array<double, strengths.size()> odds_of(const Matrix& gram, const Vector& p
   return odds;
 }
 
+/// Odds of further columns where columns c are free with prior sd one.
+class Beside {
+ public:
+  Beside(const Matrix& c, const Vector& r)
+      : c_(c), r_(r), factor_(Matrix::Identity(c.cols(), c.cols()) + c.transpose() * c) {
+    cr_ = factor_.matrixL().solve(c.transpose() * r);
+  }
+  /// Log odds of c itself.
+  double base() const { return 0.5 * cr_.squaredNorm() - Matrix(factor_.matrixL()).diagonal().array().log().sum(); }
+  std::array<double, strengths.size()> odds(const Matrix& columns) const {
+    const Matrix cb = factor_.matrixL().solve(c_.transpose() * columns);
+    return odds_of(columns.transpose() * columns - cb.transpose() * cb,
+                   columns.transpose() * r_ - cb.transpose() * cr_);
+  }
+
+ private:
+  const Matrix& c_;
+  const Vector& r_;
+  Eigen::LLT<Matrix> factor_;
+  Vector cr_;
+};
+
 }  // namespace
 
 Bank make_bank(const Observables& observables) {
   Bank bank;
-  std::size_t families = 0;
-  std::vector<double> members;
+  std::vector<double> log_members;  // of the family of each term
+  std::vector<bool> sudden;
+  double sudden_families = 0, other_families = 0;
   for (std::size_t b = 0; b < observables.blocks.size(); ++b) {
     const std::vector<Term> terms = terms_of(observables, b);
     for (std::size_t k = 0; k < terms.size();) {
       std::size_t end = k;
       while (end < terms.size() && terms[end].family == terms[k].family) ++end;
-      ++families;
-      for (std::size_t m = k; m < end; ++m) members.push_back(static_cast<double>(end - k));
+      const std::string& family = terms[k].family;
+      const bool is_sudden =
+          observables.blocks[b].ordered && (family == "step" || family == "sawtooth" || family == "periodic");
+      (is_sudden ? sudden_families : other_families) += 1;
+      for (std::size_t m = k; m < end; ++m) {
+        log_members.push_back(std::log(static_cast<double>(end - k)));
+        sudden.push_back(is_sudden);
+      }
       k = end;
     }
     bank.terms.insert(bank.terms.end(), terms.begin(), terms.end());
   }
-  for (double m : members) bank.log_share.push_back(-std::log(m * static_cast<double>(families)));
+  for (std::size_t k = 0; k < bank.terms.size(); ++k) {
+    const double share = sudden_families == 0 ? 1 : sudden[k] ? sudden_share : 1 - sudden_share;
+    bank.log_share.push_back(std::log(share / (sudden[k] ? sudden_families : other_families)) - log_members[k]);
+  }
   return bank;
 }
 
@@ -90,18 +125,14 @@ UnknownFit fit_unknown(const Bank& bank, const std::vector<Matrix>& whitened, st
     if (!firsts.insert(block).second) continue;
     const double t = strengths[best_strength[k]];
     const Matrix c = t * whitened[k];
-    const Eigen::LLT<Matrix> factor(Matrix::Identity(c.cols(), c.cols()) + c.transpose() * c);
-    const Vector cr = factor.matrixL().solve(c.transpose() * r);
-    const double base = 0.5 * cr.squaredNorm() - Matrix(factor.matrixL()).diagonal().array().log().sum();
+    const Beside beside(c, r);
     std::vector<double> second;
     for (std::size_t m = 0; m < whitened.size(); ++m) {
       if (bank.terms[m].block == block) continue;
-      const Matrix cb = factor.matrixL().solve(c.transpose() * whitened[m]);
-      const auto odds = odds_of(whitened[m].transpose() * whitened[m] - cb.transpose() * cb,
-                                whitened[m].transpose() * r - cb.transpose() * cr);
+      const auto odds = beside.odds(whitened[m]);
       for (double o : odds) second.push_back(o + bank.log_share[m] - log_strengths);
     }
-    if (!second.empty()) two.push_back(base + log_sum(second) + bank.log_share[k] - log_strengths);
+    if (!second.empty()) two.push_back(beside.base() + log_sum(second) + bank.log_share[k] - log_strengths);
   }
   fit.odds = one;
   if (!two.empty()) fit.odds = log_sum({one + std::log(1 - second_share), log_sum(two) + std::log(second_share)});

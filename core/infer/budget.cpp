@@ -39,7 +39,7 @@ MeasurementNoise estimate_noise(const Observables& observables, const Options& o
       const Vector z = (block.fit - block.hold).cwiseQuotient(std::sqrt(2.0) * block.sd);
       const double n = static_cast<double>(z.size());
       factor = std::sqrt((prior + tail_weight * z.squaredNorm()) / (prior + tail_weight * n));
-      if (n >= 12) {
+      if (n >= 12 && z.squaredNorm() > 0) {
         const double seen = z.head(z.size() - 1).dot(z.tail(z.size() - 1)) / z.squaredNorm();
         const double declared_weight = 1 / (correlation_error * correlation_error);
         correlation = (declared_weight * correlation + n * seen) / (declared_weight + n);

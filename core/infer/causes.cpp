@@ -11,6 +11,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr int grid = 241, directions = 12;
 constexpr std::array<double, 4> prior_scales = {0.25, 0.5, 1, 2};
+constexpr std::array<double, 3> shape_factors = {0.5, 1, 2};
 
 double log_prior(double amplitude, double scale, bool one_sided) {
   double sum = 0;
@@ -21,15 +22,19 @@ double log_prior(double amplitude, double scale, bool one_sided) {
   return std::log(std::max(sum, 1e-300) / prior_scales.size() / std::sqrt(2 * pi) * (one_sided ? 2 : 1));
 }
 
+/// With one tolerance of the shape.
 SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_sided, const Vector& r) {
   SingleFit fit;
   fit.amplitude = Vector::Zero(1);
   const double power = g.squaredNorm();
   if (power * scale * scale < 1e-6) return fit;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(shape.transpose() * shape);
-  const Vector lambda = solver.eigenvalues().cwiseMax(0);
-  const Vector a = solver.eigenvectors().transpose() * (shape.transpose() * r),
-               b = solver.eigenvectors().transpose() * (shape.transpose() * g);
+  Vector lambda(0), a(0), b(0);
+  if (shape.cols() > 0) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(shape.transpose() * shape);
+    lambda = solver.eigenvalues().cwiseMax(0);
+    a = solver.eigenvectors().transpose() * (shape.transpose() * r);
+    b = solver.eigenvectors().transpose() * (shape.transpose() * g);
+  }
   const double along = r.dot(g), mean = along / power, v = 1 / std::sqrt(power);
   const bool tolerant = shape.cols() > 0;
   double low = mean - (tolerant ? 16 : 8) * v - (tolerant ? 0.4 * std::abs(mean) : 0),
@@ -67,6 +72,21 @@ SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_
   return fit;
 }
 
+/// Averaged over tolerances of the shape.
+SingleFit fit_direction(const Vector& g, const Matrix& shape, double scale, bool one_sided, const Vector& r) {
+  if (shape.cols() == 0) return fit_line(g, shape, scale, one_sided, r);
+  std::vector<double> odds;
+  SingleFit best;
+  for (double factor : shape_factors) {
+    SingleFit fit = fit_line(g, factor * shape, scale, one_sided, r);
+    fit.shape_factor = factor;
+    odds.push_back(fit.odds - std::log(shape_factors.size()));
+    if (odds.size() == 1 || fit.odds > best.odds) best = fit;
+  }
+  best.odds = log_sum(odds);
+  return best;
+}
+
 Matrix shape_at(const Signature& s, const Vector& amplitude) {
   Matrix b = amplitude[0] * s.shape[0];
   if (amplitude.size() == 1) return b;
@@ -80,13 +100,13 @@ double log_normal_cdf(double x) { return std::log(std::max(0.5 * std::erfc(-x / 
 
 }  // namespace
 
-Matrix shape_columns(const Observables& observables, const Vector& signature, double scale, const Options& options) {
+Matrix shape_columns(const Observables& observables, const Vector& signature, double scale, double factor,
+                     const Options& options) {
   Matrix all = Matrix::Zero(signature.size(), 0);
   if (options.shape <= 0) return all;
   for (std::size_t b = 0; b < observables.blocks.size(); ++b) {
     const int first = observables.first(b), n = observables.size(b);
     const Vector g = signature.segment(first, n);
-    // Where four typical amplitudes stay far below the noise, no tolerance is needed.
     if (options.shape * 4 * scale * g.cwiseQuotient(observables.blocks[b].sd).norm() < 0.1) continue;
     Matrix kernel = Matrix::Ones(1, 1);
     if (n > 1)
@@ -94,7 +114,7 @@ Matrix shape_columns(const Observables& observables, const Vector& signature, do
           low_rank(0.5 * Matrix::Ones(n, n) + 0.5 * smooth_kernel(observables.blocks[b], options.shape_length), 2e-3);
     all.conservativeResize(Eigen::NoChange, all.cols() + kernel.cols());
     all.rightCols(kernel.cols()).setZero();
-    all.block(first, all.cols() - kernel.cols(), n, kernel.cols()) = options.shape * g.asDiagonal() * kernel;
+    all.block(first, all.cols() - kernel.cols(), n, kernel.cols()) = factor * options.shape * g.asDiagonal() * kernel;
   }
   return all;
 }
@@ -106,19 +126,19 @@ Signature whiten_signature(const LinearModel& model, std::size_t effect, const M
   s.columns = metric.whiten(model.signatures[effect]);
   for (int c = 0; c < e.components; ++c)
     s.shape.push_back(
-        metric.whiten(shape_columns(model.observables, model.signatures[effect].col(c), e.scale, options)));
+        metric.whiten(shape_columns(model.observables, model.signatures[effect].col(c), e.scale, 1, options)));
   return s;
 }
 
 SingleFit fit_single(const Signature& s, const Metric& metric) {
   const Vector& r = metric.residual();
-  if (s.columns.cols() == 1) return fit_line(s.columns.col(0), s.shape[0], s.scale, s.one_sided, r);
+  if (s.columns.cols() == 1) return fit_direction(s.columns.col(0), s.shape[0], s.scale, s.one_sided, r);
   std::vector<double> odds;
   SingleFit best;
   for (int k = 0; k < directions; ++k) {
     const Vector direction =
         (Vector(2) << std::cos(2 * pi * k / directions), std::sin(2 * pi * k / directions)).finished();
-    SingleFit fit = fit_line(s.columns * direction, shape_at(s, direction), s.scale, true, r);
+    SingleFit fit = fit_direction(s.columns * direction, shape_at(s, direction), s.scale, true, r);
     odds.push_back(fit.odds - std::log(directions));
     if (k == 0 || fit.odds > best.odds) {
       best = fit;
@@ -129,28 +149,33 @@ SingleFit fit_single(const Signature& s, const Metric& metric) {
   return best;
 }
 
-PairFit fit_pair(const Signature& a, const Signature& b, const Vector& start_a, const Vector& start_b,
+PairFit fit_pair(const Signature& a, const Signature& b, const SingleFit& fit_a, const SingleFit& fit_b,
                  const Metric& metric) {
   const int na = static_cast<int>(a.columns.cols()), nb = static_cast<int>(b.columns.cols()), n = na + nb;
   Matrix x(metric.residual().size(), n);
   x << a.columns, b.columns;
   Vector mean(n), scale(n);
-  mean << start_a, start_b;
+  mean << fit_a.amplitude, fit_b.amplitude;
   scale << Vector::Constant(na, a.scale), Vector::Constant(nb, b.scale);
   PairFit fit;
   Matrix information(n, n);
   Vector pull(n);
   double base = 0;
   for (int pass = 0; pass < 3; ++pass) {
-    const Matrix shape_a = shape_at(a, mean.head(na)), shape_b = shape_at(b, mean.tail(nb));
+    const Matrix shape_a = fit_a.shape_factor * shape_at(a, mean.head(na)),
+                 shape_b = fit_b.shape_factor * shape_at(b, mean.tail(nb));
     Matrix c(x.rows(), shape_a.cols() + shape_b.cols());
     c << shape_a, shape_b;
-    const Eigen::LLT<Matrix> factor(Matrix::Identity(c.cols(), c.cols()) + c.transpose() * c);
-    const Vector cr = factor.matrixL().solve(c.transpose() * metric.residual());
-    const Matrix cx = factor.matrixL().solve(c.transpose() * x);
-    information = x.transpose() * x - cx.transpose() * cx;
-    pull = x.transpose() * metric.residual() - cx.transpose() * cr;
-    base = 0.5 * cr.squaredNorm() - Matrix(factor.matrixL()).diagonal().array().log().sum();
+    information = x.transpose() * x;
+    pull = x.transpose() * metric.residual();
+    if (c.cols() > 0) {
+      const Eigen::LLT<Matrix> factor(Matrix::Identity(c.cols(), c.cols()) + c.transpose() * c);
+      const Vector cr = factor.matrixL().solve(c.transpose() * metric.residual());
+      const Matrix cx = factor.matrixL().solve(c.transpose() * x);
+      information -= cx.transpose() * cx;
+      pull -= cx.transpose() * cr;
+      base = 0.5 * cr.squaredNorm() - Matrix(factor.matrixL()).diagonal().array().log().sum();
+    }
     Matrix precision = information;
     precision.diagonal().array() += (2 * scale).array().pow(-2);
     mean = precision.ldlt().solve(pull);
@@ -172,7 +197,8 @@ PairFit fit_pair(const Signature& a, const Signature& b, const Vector& start_a, 
       if (b.one_sided) l += std::log(2.0) + log_normal_cdf(m[na] / std::sqrt(v(na, na)));
       odds.push_back(l - std::log(16.0));
     }
-  fit.odds = log_sum(odds);
+  // The tolerances were chosen among three each.
+  fit.odds = log_sum(odds) - 2 * std::log(shape_factors.size());
   fit.first = mean.head(na), fit.second = mean.tail(nb);
   return fit;
 }

@@ -16,14 +16,17 @@ struct Signature {
   bool one_sided = false;
 };
 
-/// Shape tolerance of one component's signature, unwhitened: all rows, few columns.
-Matrix shape_columns(const Observables& observables, const Vector& signature, double scale, const Options& options);
+/// Tolerance of a signature's shape, unwhitened: all rows, few columns. Blocks where four times `scale` times the
+/// signature stays far below the noise need none. factor: over options.shape.
+Matrix shape_columns(const Observables& observables, const Vector& signature, double scale, double factor,
+                     const Options& options);
 Signature whiten_signature(const LinearModel& model, std::size_t effect, const Metric& metric, const Options& options);
 
 struct SingleFit {
   double odds = 0;                   // log, against "no effect", prior of the amplitude integrated out
   Vector amplitude;                  // posterior mean
   double sd = 0, low = 0, high = 0;  // of the amplitude (along its mean direction): sd, 5 % and 95 % points
+  double shape_factor = 1;           // most probable tolerance of the shape, over options.shape
 };
 
 /// On a grid of 241 amplitudes; 12 directions where there are two components. Prior: normal (half-normal where
@@ -35,8 +38,8 @@ struct PairFit {
   Vector first, second;  // amplitudes, posterior mean
 };
 
-/// Two effects together, from closed forms around their joint fit.
-PairFit fit_pair(const Signature& a, const Signature& b, const Vector& start_a, const Vector& start_b,
+/// Two effects together, from closed forms around their joint fit; amplitudes start from the single fits.
+PairFit fit_pair(const Signature& a, const Signature& b, const SingleFit& fit_a, const SingleFit& fit_b,
                  const Metric& metric);
 
 }  // namespace calx::infer

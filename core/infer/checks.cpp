@@ -3,22 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/random.hpp"
+#include "infer/heavy_tails.hpp"
 
 namespace calx::infer {
-
-namespace {
-
-constexpr double sd_error = 0.2;  // relative, of the noise of a block
-
-/// t with 5 degrees of freedom, scaled to variance one.
-double heavy_tailed(Random& random) {
-  const double z = random.normal(), n = random.normal();
-  const double chi = n * n - 2 * std::log((1 - random.uniform()) * (1 - random.uniform()));
-  return z / std::sqrt(chi / 5) / std::sqrt(5.0 / 3);
-}
-
-}  // namespace
 
 FitCheck check_fit(const LinearModel& model, const Bank& bank, const Matrix& systematic, const Matrix& noise,
                    const Vector& residual, const Options& options, std::uint64_t stream) {
@@ -46,9 +33,7 @@ FitCheck check_fit(const LinearModel& model, const Bank& bank, const Matrix& sys
   for (int k = 0; k < options.nulls; ++k)
     for (int i = 0; i < n; ++i) gauss(i, k) = random.normal(), heavy(i, k) = heavy_tailed(random);
   heavy = noise_root.triangularView<Eigen::Lower>() * heavy;
-  for (int k = 0; k < options.nulls; ++k)
-    for (std::size_t b = 0; b < all.blocks.size(); ++b)
-      heavy.col(k).segment(all.first(b), all.size(b)) *= std::exp(sd_error * random.normal());
+  for (int k = 0; k < options.nulls; ++k) misstate_blocks(random, all, heavy.col(k));
   heavy += gauss_root.triangularView<Eigen::Lower>() * gauss;
   null = metric.whiten(heavy);
 

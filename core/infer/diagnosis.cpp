@@ -23,31 +23,14 @@ Posed pose(const LinearModel& model, const Budget& budget, const View& view, con
   return posed;
 }
 
-Vector amplitude_of(const Posterior& posterior, const std::vector<std::size_t>& named, std::size_t effect) {
+/// Effects as fitted together, where two are named, or alone.
+std::vector<Part> parts_of(const Posterior& posterior, const std::vector<std::size_t>& named) {
+  std::vector<Part> parts;
+  for (std::size_t e : named) parts.push_back({e, posterior.fits[e].amplitude, posterior.fits[e].shape_factor});
   for (const PairModel& pair : posterior.pairs)
     if (named.size() == 2 && pair.first == named[0] && pair.second == named[1])
-      return effect == pair.first ? pair.fit.first : pair.fit.second;
-  return posterior.fits[effect].amplitude;
-}
-
-std::vector<Vector> amplitudes_of(const Posterior& posterior, const std::vector<std::size_t>& named) {
-  std::vector<Vector> out;
-  for (std::size_t e : named) out.push_back(amplitude_of(posterior, named, e));
-  return out;
-}
-
-/// Covariance that the named effects add: free amplitudes and uncertain shapes.
-Matrix freed(const LinearModel& model, const std::vector<std::size_t>& named, const std::vector<Vector>& amplitudes,
-             const Options& options) {
-  Matrix c = Matrix::Zero(model.base.size(), model.base.size());
-  for (std::size_t k = 0; k < named.size(); ++k) {
-    const Matrix& g = model.signatures[named[k]];
-    const double scale = std::max(2 * model.effects[named[k]].scale, amplitudes[k].norm());
-    c += scale * scale * g * g.transpose();
-    const Matrix b = shape_columns(model.observables, g * amplitudes[k], 1, options);
-    c += b * b.transpose();
-  }
-  return c;
+      parts[0].amplitude = pair.fit.first, parts[1].amplitude = pair.fit.second;
+  return parts;
 }
 
 }  // namespace
@@ -67,7 +50,8 @@ const char* name(Verdict verdict) {
 
 Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& options) {
   Diagnosis d;
-  Budget budget = error_budget(model, options);
+  Budget& budget = d.budget;
+  budget = error_budget(model, options);
   d.events = screen(model, bank, budget.systematic, budget.fit, options);
   screen(model, bank, budget.systematic, budget.hold, options);
   budget.both = combine(budget.fit, budget.hold, model.observables);
@@ -84,12 +68,23 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
   d.after = d.before;
   const Posterior& p = d.posterior;
   for (std::size_t e = 0; e < p.inclusion.size(); ++e)
-    if (p.inclusion[e] > options.name_above) d.named.push_back(e);
+    if (p.inclusion[e] > options.name_above && d.fitted.inclusion[e] > options.fitted_above) d.named.push_back(e);
   if (d.named.size() > 2) d.named.clear();
   if (!d.named.empty()) {
-    const std::vector<Vector> amplitudes = amplitudes_of(p, d.named);
-    d.gain = held_out_gain(model, budget, d.named, amplitudes_of(d.fitted, d.named), options);
-    const Matrix free = freed(model, d.named, amplitudes, options);
+    d.gain = held_out_gain(model, budget, parts_of(d.fitted, d.named), options);
+    // Of two, each must earn its place beside the other; else the better one is left to stand alone.
+    if (d.named.size() == 2) {
+      const Gain first = held_out_gain(model, budget, parts_of(d.fitted, {d.named[0]}), options),
+                 second = held_out_gain(model, budget, parts_of(d.fitted, {d.named[1]}), options);
+      const bool first_leads = first.log_score >= second.log_score;
+      const Gain& better = first_leads ? first : second;
+      if (d.gain.log_score - better.log_score < options.partner_above) {
+        d.named = {d.named[first_leads ? 0 : 1]};
+        d.gain = better;
+      }
+    }
+    const Freedom freedom = freedom_of(model, parts_of(p, d.named), options);
+    const Matrix free = freedom.columns * freedom.columns.transpose() + freedom.own;
     d.after = check_fit(model, bank, posed.covariance - view.noise + free, view.noise, posed.residual, options, 2);
     if (d.after.p < options.fit_above) {
       d.verdict = Verdict::unknown;
@@ -104,7 +99,7 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
       d.reason = "probable, fits, and predicts the held-out data";
     }
   } else if (p.unknown > 0.5) {
-    d.gain = held_out_gain(model, budget, bank.terms[p.discrepancy.term], p.discrepancy.strength, options);
+    d.gain = held_out_gain(model, budget, bank.terms[p.discrepancy.term], p.discrepancy.strength);
     if (d.gain.log_score >= options.gain_above) {
       d.verdict = Verdict::unknown;
       d.reason = "a discrepancy outside the library predicts the held-out data";

@@ -7,6 +7,7 @@
 #include "infer/gain.hpp"
 #include "infer/posterior.hpp"
 #include "infer/screen.hpp"
+#include "infer/simulator.hpp"
 
 namespace calx::infer {
 
@@ -22,10 +23,16 @@ struct Diagnosis {
   Posterior fitted;                 // of the fitted campaign alone
   FitCheck before, after;           // of the recalibrated model, and with the named effects
   Gain gain;                        // of the named effects, or of the unknown term
-  double mixture_score = 0;  // held-out log score of all explanations of the fitted campaign that hold a named one
-  std::vector<Event> events;
+  double mixture_score = 0;      // held-out log score of all explanations of the fitted campaign that hold a named one
+  Budget budget;                 // screened
+  std::vector<Event> events;     // of the fitted campaign
   std::vector<std::size_t> set;  // credible set of 95 %, see credible_set
 };
+
+/// Runs the effects that lead under the model so far at the amplitudes fitted, and corrects their signatures where the
+/// response is not proportional to the amplitude: linear model to secant model. Costs options.refined runs at most;
+/// instrument effects cost none.
+void refine(LinearModel& model, const Bank& bank, Simulator& simulator, const Options& options);
 
 /// Deterministic from the seed of the options. A cause is named only if its probability is above options.name_above,
 /// the fit test does not refuse it, and it predicts the held-out campaign better than the recalibrated old model.

@@ -55,23 +55,27 @@ Gain compare(const LinearModel& model, const Budget& budget, const Matrix& colum
 
 }  // namespace
 
-Gain held_out_gain(const LinearModel& model, const Budget& budget, const std::vector<std::size_t>& effects,
-                   const std::vector<Vector>& amplitudes, const Options& options) {
+Freedom freedom_of(const LinearModel& model, const std::vector<Part>& parts, const Options& options) {
   const auto rows = model.base.size();
-  Matrix columns(rows, 0), own = Matrix::Zero(rows, rows);
-  for (std::size_t k = 0; k < effects.size(); ++k) {
-    const std::size_t e = effects[k];
-    const Matrix& g = model.signatures[e];
-    const double scale = std::max(2 * model.effects[e].scale, amplitudes[k].norm());
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + g.cols());
-    columns.rightCols(g.cols()) = scale * g;
-    const Matrix b = shape_columns(model.observables, g * amplitudes[k], 1, options);
-    own += b * b.transpose();
+  Freedom freedom{Matrix(rows, 0), Matrix::Zero(rows, rows)};
+  for (const Part& part : parts) {
+    const Matrix& g = model.signatures[part.effect];
+    const double scale = std::max(2 * model.effects[part.effect].scale, part.amplitude.norm());
+    freedom.columns.conservativeResize(Eigen::NoChange, freedom.columns.cols() + g.cols());
+    freedom.columns.rightCols(g.cols()) = scale * g;
+    const Matrix b = shape_columns(model.observables, g * part.amplitude, 1, part.shape_factor, options);
+    freedom.own += b * b.transpose();
   }
-  return compare(model, budget, columns, own);
+  return freedom;
 }
 
-Gain held_out_gain(const LinearModel& model, const Budget& budget, const Term& term, double strength, const Options&) {
+Gain held_out_gain(const LinearModel& model, const Budget& budget, const std::vector<Part>& parts,
+                   const Options& options) {
+  const Freedom freedom = freedom_of(model, parts, options);
+  return compare(model, budget, freedom.columns, freedom.own);
+}
+
+Gain held_out_gain(const LinearModel& model, const Budget& budget, const Term& term, double strength) {
   const auto rows = model.base.size();
   Matrix columns = Matrix::Zero(rows, term.columns.cols());
   columns.middleRows(model.observables.first(term.block), term.columns.rows()) = strength * term.columns;

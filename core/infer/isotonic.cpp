@@ -21,9 +21,11 @@ IsotonicMap learn_isotonic(std::vector<std::pair<double, bool>> statements, int 
   std::sort(statements.begin(), statements.end());
   std::vector<Pool> pools;
   const auto size = static_cast<std::size_t>(group);
-  for (std::size_t first = 0; first < statements.size(); first += size) {
+  for (std::size_t first = 0, end = 0; first < statements.size(); first = end) {
     Pool pool{0, 0, 0};
-    const std::size_t end = std::min(first + size, statements.size());
+    end = std::min(first + size, statements.size());
+    // Equal statements stay together, else their failures would sort before their successes.
+    while (end < statements.size() && statements[end].first == statements[end - 1].first) ++end;
     for (std::size_t k = first; k < end; ++k)
       pool.count += 1, pool.stated += statements[k].first, pool.hits += statements[k].second ? 1 : 0;
     pools.push_back(pool);

@@ -18,20 +18,13 @@ std::vector<RunPoint> base_points(const Vector& u, int count, std::uint64_t& see
   return points;
 }
 
-/// Variance, over that of one run, of changed - base - rho * (partner - base), without the response.
-double prediction_variance(double rho, double base_weight) {
-  return 1 - rho * rho + (1 - rho) * (1 - rho) * base_weight;
-}
-
-/// Most probable correlation of runs of one seed: each run with a change is predicted from the unchanged run of its
-/// seed as mean + rho * (unchanged - mean), a control variate.
-double estimate_common(const Denoiser& denoise, const std::vector<Vector>& changed, const Vector& partner,
-                       const Vector& base, double base_weight) {
+/// Most probable correlation of runs of one seed, for the model's partner and the runs with a change.
+double estimate_common(const Denoiser& denoise, const std::vector<Vector>& changed, LinearModel& model) {
   double best = 0, best_evidence = -1e300;
   for (double rho : {0.0, 0.3, 0.5, 0.65, 0.8, 0.9, 0.95, 0.99}) {
+    model.common_numbers = rho;
     double evidence = 0;
-    for (const Vector& run : changed)
-      denoise(run - base - rho * (partner - base), prediction_variance(rho, base_weight), &evidence);
+    for (const Vector& run : changed) denoise(model.response(run), model.response_variance(), &evidence);
     if (evidence > best_evidence) best = rho, best_evidence = evidence;
   }
   return best;
@@ -39,8 +32,15 @@ double estimate_common(const Denoiser& denoise, const std::vector<Vector>& chang
 
 }  // namespace
 
+Vector LinearModel::response(const Vector& run) const { return run - base - common_numbers * (partner - base); }
+
+double LinearModel::response_variance() const {
+  const double rho = common_numbers;
+  return 1 - rho * rho + (1 - rho) * (1 - rho) * base_weight;
+}
+
 int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options) {
-  int runs = 1 + 2 * parameters;
+  int runs = 1 + 2 * parameters + options.refined;
   for (int n : options.base_runs) runs += n;
   for (const Effect& effect : effects) runs += effect.instrument ? 0 : effect.components;
   return runs;
@@ -107,10 +107,10 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   std::vector<Vector> changed;
   for (int k = 1; k < runs.cols(); ++k) changed.push_back(runs.col(k));
   const Denoiser denoise(observables, model.scatter);
-  model.common_numbers = options.common_numbers >= 0
-                             ? options.common_numbers
-                             : estimate_common(denoise, changed, runs.col(0), model.base, model.base_weight);
-  const double rho = model.common_numbers, variance = prediction_variance(rho, model.base_weight);
+  model.partner = runs.col(0);
+  model.common_numbers =
+      options.common_numbers >= 0 ? options.common_numbers : estimate_common(denoise, changed, model);
+  const double rho = model.common_numbers;
   std::size_t next = 0;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     Matrix columns(rows, effects[e].components);
@@ -121,8 +121,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
                              common_seed};
         columns.col(c) = simulator.instrument(point) / amplitude;
       } else {
-        const Vector response = changed[next++] - model.base - rho * (runs.col(0) - model.base);
-        columns.col(c) = denoise(response, variance) / amplitude;
+        columns.col(c) = denoise(model.response(changed[next++]), model.response_variance()) / amplitude;
       }
     }
     model.signatures.push_back(columns);
@@ -130,7 +129,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   for (int k = 0; k < p; ++k)
     model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * step * step));
   model.sensitivity_weight = (1 - rho) / (2 * step * step) * (moved + trace);
-  model.runs = planned_runs(effects, p, options);
+  model.runs = planned_runs(effects, p, options) - options.refined;
   return model;
 }
 

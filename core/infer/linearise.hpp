@@ -18,12 +18,18 @@ struct LinearModel {
   std::vector<Matrix> signatures;  // per effect, a column per component, per unit of amplitude
   SeedScatter scatter;
   double common_numbers = 0;      // correlation of runs of one seed
+  Vector partner;                 // run at u without effects, of the seed that all runs with effects share
   double base_weight = 1;         // variance of the base mean over that of one run
   double sensitivity_weight = 0;  // variance of J (u' - u) over that of one run, at the posterior of u'
   int runs = 0;
+
+  /// Response in a run of the partner's seed: the run less what the partner foretells of it, a control variate. Its
+  /// noise covariance is response_variance times that of one run.
+  Vector response(const Vector& run) const;
+  double response_variance() const;
 };
 
-/// Number of runs of a plan.
+/// Number of runs of a plan, refinement included.
 int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options);
 
 /// Runs the simulator as planned: base runs with independent seeds before each fit of u to the campaign "fit", central

@@ -11,9 +11,10 @@ struct Options {
   std::uint64_t seed = 1;
 
   // Plan of runs.
-  std::vector<int> base_runs = {3, 4, 11};  // with independent seeds, before each of the re-based fits
-  double step_scales = 2;                   // amplitude of an effect's run, in its scales
-  double common_numbers = -1;               // correlation of runs of one seed, 0..1; -1: estimate it
+  std::vector<int> base_runs = {3, 3, 9};  // with independent seeds, before each of the re-based fits
+  double step_scales = 2;                  // amplitude of an effect's run, in its scales
+  int refined = 3;                         // effects run again at their fitted amplitudes
+  double common_numbers = -1;              // correlation of runs of one seed, 0..1; -1: estimate it
 
   // Error budget, in declared measurement sd.
   double tolerance = 0.35;      // of the model, half white and half smooth
@@ -27,8 +28,10 @@ struct Options {
 
   // Decision.
   double name_above = 0.9;
+  double fitted_above = 0.3;   // probability that the fitted campaign alone must give a named effect
   double screen_above = 4.5;   // sd; leave-one-out residuals beyond it are events
   double gain_above = 3;       // nats of held-out log score
+  double partner_above = 1;    // nats that a second named effect must add
   double fit_above = 0.01;     // p of the fit test
   double global_above = 0.05;  // p below which "no discrepancy shown" is not said
   int nulls = 400;             // simulated data sets behind every p

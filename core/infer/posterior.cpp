@@ -20,9 +20,7 @@ Posterior weigh(const LinearModel& model, const Bank& bank, const Metric& metric
   if (options.pairs)
     for (std::size_t a = 0; a < count; ++a)
       for (std::size_t b = a + 1; b < count; ++b) {
-        PairModel pair{
-            a, b,
-            fit_pair(signatures[a], signatures[b], posterior.fits[a].amplitude, posterior.fits[b].amplitude, metric)};
+        PairModel pair{a, b, fit_pair(signatures[a], signatures[b], posterior.fits[a], posterior.fits[b], metric)};
         posterior.pairs.push_back(pair);
         log_odds.push_back(pair.fit.odds +
                            std::log(options.prior_pair / (0.5 * static_cast<double>(count * (count - 1)))));

@@ -44,7 +44,7 @@ std::vector<Term> terms_of(const Observables& observables, std::size_t index) {
   if (n >= 12)
     for (double length : {0.05, 0.15, 0.4})
       add("decay", length * (block.x[n - 1] - block.x[0]), along([&](double t) { return std::exp(-t / length); }));
-  const int places = n > 20 ? 15 : 7;
+  const int places = n > 60 ? 39 : n > 20 ? 15 : 7;
   if (block.ordered)
     for (int k = 1; k <= places; ++k) {
       const double at = k / (places + 1.0);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "diagnosis/experiments.hpp"
 
 namespace calx::diagnosis {
 
@@ -54,13 +55,14 @@ Study make_study(std::uint64_t seed) {
                                        Kind::control, Kind::single, Kind::outside, Kind::pair};
   const std::vector<infer::Effect> library = effect_library();
   Random random(seed, 11);
-  Study study;
+  Vector powder_of_day(line::parameters);
+  for (double& u : powder_of_day) u = 0.8 * random.normal();
+  Study study{{}, {}, {}, Forms(random)};
+  const Forms& forms = study.forms;
   Truth& truth = study.truth;
   truth.kind = mix[seed % mix.size()];
-  truth.u.resize(line::parameters);
-  for (double& u : truth.u) u = 0.8 * random.normal();
+  truth.u = powder_of_day;
   truth.amplitudes.resize(effect_count);
-  const Forms forms(random);
   const Ruler ruler(truth.u);
   const Vector without = plant(truth.u, {}, {}, forms, 0);
 
@@ -183,7 +185,32 @@ void common_practice(const Study& study, LineSimulator& simulator, Outcome& outc
 
 }  // namespace
 
-Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken broken) {
+namespace {
+
+/// The measurement proposed, and a random one, made at the plant.
+void ask_next(const Study& study, const infer::LinearModel& model, const infer::Options& options, Outcome& outcome) {
+  const std::vector<infer::Experiment> experiments = experiments_of(model.u);
+  const std::size_t best = infer::propose(model, outcome.diagnosis, experiments, options)[0].experiment;
+  Random random(options.seed, 14);
+  const std::size_t other = random.bits() % experiments.size();
+  outcome.next.asked = true;
+  for (bool proposed : {true, false}) {
+    const std::size_t x = proposed ? best : other;
+    const Vector y = perform(x, study.truth.u, study.truth.amplitudes, study.truth.strange, study.forms, random);
+    const std::vector<double> p = infer::after_experiment(
+        infer::forecast(model, outcome.diagnosis, experiments[x], options), y, model.effects.size());
+    std::vector<std::size_t> named;
+    for (std::size_t e = 0; e < p.size(); ++e)
+      if (p[e] > options.name_above) named.push_back(e);
+    const bool right = named == study.truth.effects, wrong = !right && !named.empty();
+    (proposed ? outcome.next.best_right : outcome.next.random_right) = right;
+    (proposed ? outcome.next.best_wrong : outcome.next.random_wrong) = wrong;
+  }
+}
+
+}  // namespace
+
+Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken broken, double scatter) {
   Study study = make_study(seed);
   Outcome outcome;
   outcome.truth = study.truth;
@@ -194,8 +221,10 @@ Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken b
   options.unknown_rival = broken != Broken::no_unknown;
   if (broken == Broken::fit_is_hold_out)
     for (infer::Block& block : study.observables.blocks) block.hold = block.fit;
-  LineSimulator simulator(0.8, seed * 2 + 1000003, study.bias);
+  LineSimulator simulator(0.8, seed * 2 + 1000003, study.bias, scatter);
   infer::LinearModel model = infer::linearise(study.observables, effect_library(), simulator, options);
+  const infer::Bank bank = infer::make_bank(model.observables);
+  infer::refine(model, bank, simulator, options);
   outcome.runs = simulator.runs();
   if (broken == Broken::shuffled_signatures) {
     Random random(seed, 12);
@@ -209,7 +238,14 @@ Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken b
       }
     }
   }
-  outcome.diagnosis = infer::diagnose(model, infer::make_bank(model.observables), options);
+  outcome.diagnosis = infer::diagnose(model, bank, options);
+  if (outcome.diagnosis.verdict == infer::Verdict::unknown) {
+    const std::vector<infer::UnknownTerm> terms = infer::find_terms(model, bank, outcome.diagnosis, options);
+    if (!terms.empty()) outcome.family = bank.terms[terms[0].term].family, outcome.stability = terms[0].stability;
+  }
+  if (study.truth.kind == Kind::single && outcome.diagnosis.verdict == infer::Verdict::ambiguous &&
+      study.truth.delta <= 10)
+    ask_next(study, model, options, outcome);
   common_practice(study, simulator, outcome);
   return outcome;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnosis/plant.hpp"
-#include "infer/diagnosis.hpp"
+#include "infer/unknown_term.hpp"
 
 namespace calx::diagnosis {
 
@@ -28,6 +28,7 @@ struct Study {
   Truth truth;
   infer::Observables observables;  // as declared, with both campaigns
   Vector bias;                     // numerical, of the simulator
+  Forms forms;
 };
 
 /// Ways to break the method, each of which must be seen in the table.
@@ -41,10 +42,19 @@ struct Outcome {
   Truth truth;
   infer::Diagnosis diagnosis;
   int runs = 0;
+  std::string family;  // of the first term of an unknown effect; empty: none found
+  double stability = 0;
+  /// What one more measurement would have settled, where a single effect was left undecided.
+  struct Next {
+    bool asked = false;
+    bool best_right = false, best_wrong = false, random_right = false, random_wrong = false;
+  } next;
   bool common_practice_right = false;  // bench calibration and the effect that cuts the squared error most
   bool common_practice_named = false;
 };
 
-Outcome diagnose_study(std::uint64_t seed, const infer::Options& options, Broken broken = Broken::no);
+/// scatter: of the simulator's runs by their seed, over the usual.
+Outcome diagnose_study(std::uint64_t seed, const infer::Options& options, Broken broken = Broken::no,
+                       double scatter = 1);
 
 }  // namespace calx::diagnosis

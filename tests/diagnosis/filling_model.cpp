@@ -185,8 +185,8 @@ Matrix LineSimulator::run(const std::vector<infer::RunPoint>& points) {
     mix(point.u);
     if (point.effect >= 0) amplitudes[static_cast<std::size_t>(point.effect)] = point.amplitude, mix(point.amplitude);
     out.col(static_cast<Eigen::Index>(k)) = simulate(point.u, amplitudes) + bias_ +
-                                            std::sqrt(common_) * seed_scatter(seed_, 2 * point.seed) +
-                                            std::sqrt(1 - common_) * seed_scatter(seed_ + 1, own | 1);
+                                            scatter_ * std::sqrt(common_) * seed_scatter(seed_, 2 * point.seed) +
+                                            scatter_ * std::sqrt(1 - common_) * seed_scatter(seed_ + 1, own | 1);
   }
   runs_ += static_cast<int>(points.size());
   return out;

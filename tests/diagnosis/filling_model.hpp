@@ -85,9 +85,10 @@ Vector seed_scatter(std::uint64_t seed, std::uint64_t stream);
 /// The stand-in as the diagnosis sees it, with runs that scatter and a hidden numerical bias.
 class LineSimulator : public infer::Simulator {
  public:
-  /// common: correlation of runs of one seed; seed: of this stand-in; bias: added to every run.
-  LineSimulator(double common, std::uint64_t seed, Vector bias)
-      : common_(common), seed_(seed), bias_(std::move(bias)) {}
+  /// common: correlation of runs of one seed; seed: of this stand-in; bias: added to every run; scatter: over the
+  /// usual.
+  LineSimulator(double common, std::uint64_t seed, Vector bias, double scatter)
+      : common_(common), seed_(seed), bias_(std::move(bias)), scatter_(scatter) {}
   int parameters() const override { return line::parameters; }
   Matrix run(const std::vector<infer::RunPoint>& points) override;
   Vector instrument(const infer::RunPoint& point) override;
@@ -97,6 +98,7 @@ class LineSimulator : public infer::Simulator {
   double common_;
   std::uint64_t seed_;
   Vector bias_;
+  double scatter_;
   int runs_ = 0;
 };
 

@@ -66,6 +66,11 @@ Table tabulate(const std::vector<Outcome>& outcomes) {
       bool inside = false;
       for (std::size_t e : d.set) inside = inside || e == o.truth.effects[0];
       t.in_set.add(inside);
+      if (o.next.asked) {
+        t.next_right.add(o.next.best_right);
+        t.next_wrong.add(o.next.best_wrong);
+        t.random_right.add(o.next.random_right);
+      }
       t.set_size += static_cast<double>(d.set.size()), ++sets;
       if (right(o)) {
         const infer::SingleFit& fit = d.posterior.fits[o.truth.effects[0]];
@@ -76,6 +81,10 @@ Table tabulate(const std::vector<Outcome>& outcomes) {
       }
     } else if (o.truth.kind == Kind::outside) {
       t.outside_named.add(named);
+      if (unknown) {
+        const std::vector<std::string> families = alien_families(o.truth.alien);
+        t.family_right.add(std::find(families.begin(), families.end(), o.family) != families.end());
+      }
       if (o.truth.delta >= 8) t.outside_flagged.add(unknown);
     } else {
       t.pair_right.add(right(o));
@@ -112,6 +121,10 @@ std::string describe(const std::vector<Outcome>& outcomes) {
   row("anything wrong about a pair", t.pair_wrong, "(<= 2)");
   row("stated probability >= 0.97 is true", t.sure_true, ">= 97");
   row("90 % intervals of named amplitudes cover", t.covered, "85..95");
+  row("right family for an unknown effect that is flagged", t.family_right, ">= 90");
+  row("undecided: the proposed measurement settles it", t.next_right, ">= 85");
+  row("... and names wrongly", t.next_wrong, "<= 1");
+  row("... a random one settles it", t.random_right, "(contrast)");
   row("common practice: single effect right", t.practice_right, "(contrast)");
   row("common practice: a cause named, all studies", t.practice_named, "(contrast)");
   std::snprintf(line, sizeof line, "%-58s %6d%36s goal <= 44\n", "most runs of a study", t.most_runs, "");
@@ -196,7 +209,7 @@ std::string list_studies(const std::vector<Outcome>& outcomes) {
                   : wrong(o) ? "WRONG "
                              : "",
                   infer::name(d.verdict), d.posterior.none, d.fitted.none, d.posterior.unknown, d.fitted.unknown,
-                  d.gain.log_score, d.before.p, d.after.p, leading.c_str());
+                  d.gain.log_score, d.before.p, d.after.p, (leading + " " + o.family).c_str());
     text += line;
   }
   return text;

@@ -19,7 +19,8 @@ struct Rate {
 /// Figures of the goals.
 struct Table {
   Rate control_named, control_unknown, single_wrong, outside_named, single_right, clear_right, in_set, outside_flagged,
-      pair_right, pair_wrong, sure_true, covered, family_right, practice_right, practice_named;
+      pair_right, pair_wrong, sure_true, covered, family_right, next_right, next_wrong, random_right, practice_right,
+      practice_named;
   double set_size = 0;
   int most_runs = 0;
 };

@@ -1,0 +1,78 @@
+#include <doctest/doctest.h>
+
+#include "infer/diagnosis.hpp"
+#include "infer/small_problem.hpp"
+
+using namespace calx::infer;
+
+namespace {
+
+/// base 10 + 3 u on the single number, effects as the signatures, the bump quadratic in its amplitude.
+class SmallSimulator : public Simulator {
+ public:
+  explicit SmallSimulator(double scatter) : scatter_(scatter) {}
+  int parameters() const override { return 1; }
+  Matrix run(const std::vector<RunPoint>& points) override {
+    runs += static_cast<int>(points.size());
+    Matrix out(31, static_cast<Eigen::Index>(points.size()));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      calx::Random random(points[k].seed, 9);
+      Vector y = scatter_ * normal_vector(random, 31);
+      y.array() += 10;
+      y[30] += 3 * points[k].u[0];
+      if (points[k].effect >= 0) {
+        const double a = points[k].amplitude[0];
+        y += (points[k].effect == 2 ? a * a : a) * small_signatures()[static_cast<std::size_t>(points[k].effect)];
+      }
+      out.col(static_cast<Eigen::Index>(k)) = y;
+    }
+    return out;
+  }
+  Vector instrument(const RunPoint& point) override { return point.amplitude[0] * small_signatures()[1]; }
+  int runs = 0;
+
+ private:
+  double scatter_;
+};
+
+Observables measured(double single) {
+  Observables all = small_observables();
+  for (Vector* y : {&all.blocks[0].fit, &all.blocks[0].hold}) y->setConstant(10);
+  for (Vector* y : {&all.blocks[1].fit, &all.blocks[1].hold}) y->setConstant(single);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a linear simulator gives its plane back, re-based where the data are, in the planned number of runs") {
+  SmallSimulator simulator(0.05);
+  Options options;
+  options.refined = 0;
+  std::vector<Effect> effects = small_model().effects;
+  effects[1].instrument = true;
+  const LinearModel model = linearise(measured(16), effects, simulator, options);
+  CHECK(simulator.runs == planned_runs(effects, 1, options));
+  CHECK(model.runs == simulator.runs);
+  CHECK(simulator.runs == 15 + 2 + 1 + 2);
+  CHECK(model.sensitivities(30, 0) == doctest::Approx(3).epsilon(0.05));
+  // Data ask for u = 2; sd 2 of the number against a prior of 3 per unit draws it back to about 1.4.
+  CHECK(model.u[0] == doctest::Approx(2 * 9 / (9 + 4 * (1 + 0.2125))).epsilon(0.05));
+  CHECK(model.base[30] == doctest::Approx(10 + 3 * model.u[0]).epsilon(0.01));
+  CHECK((model.signatures[0] - small_signatures()[0]).norm() < 0.1 * small_signatures()[0].norm());
+  CHECK((model.signatures[1] - small_signatures()[1]).norm() < 1e-12);
+}
+
+TEST_CASE("a response that is not proportional to the amplitude is corrected at the fitted amplitude") {
+  SmallSimulator simulator(0.01);
+  Options options;
+  options.refined = 1;
+  Observables all = measured(10);
+  for (Vector* y : {&all.blocks[0].fit, &all.blocks[0].hold}) *y += 9 * small_signatures()[2].col(0).head(30);
+  LinearModel model = linearise(all, small_model().effects, simulator, options);
+  // Run at amplitude 2, the response is 4: signature 2 per unit, amplitude 4.5, where the response is 20 and not 9.
+  CHECK(model.signatures[2](15, 0) == doctest::Approx(2).epsilon(0.05));
+  const Bank bank = make_bank(all);
+  refine(model, bank, simulator, options);
+  CHECK(simulator.runs == planned_runs(small_model().effects, 1, options));
+  CHECK(model.signatures[2](15, 0) > 3.5);
+}

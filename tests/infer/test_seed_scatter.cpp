@@ -1,0 +1,34 @@
+#include <doctest/doctest.h>
+
+#include "base/error.hpp"
+#include "infer/seed_scatter.hpp"
+#include "infer/small_problem.hpp"
+
+using namespace calx::infer;
+
+TEST_CASE("white and common scatter are told apart, whatever the means of the groups") {
+  const Observables all = small_observables();
+  calx::Random random(2, 1);
+  std::vector<Matrix> groups;
+  for (int g = 0; g < 40; ++g) {
+    Matrix group(31, 10);
+    for (int run = 0; run < 10; ++run) {
+      const double common = 0.6 * random.normal();
+      for (int k = 0; k < 30; ++k) group(k, run) = 100 * g + 0.5 * (0.8 * random.normal() + common);
+      group(30, run) = 2 * 1.1 * random.normal();
+    }
+    groups.push_back(group);
+  }
+  const SeedScatter scatter = estimate_scatter(all, groups);
+  // 360 degrees of freedom: relative sd of an estimated sd is 1 / sqrt(720) = 3.7 %, tripled.
+  CHECK(scatter.white[0] == doctest::Approx(0.8).epsilon(0.02));
+  CHECK(scatter.common[0] == doctest::Approx(0.6).epsilon(0.12));
+  CHECK(scatter.white[1] == doctest::Approx(1.1).epsilon(0.12));
+  CHECK(scatter.common[1] == 0);
+  CHECK(scatter.covariance(all)(30, 30) == doctest::Approx(4 * scatter.white[1] * scatter.white[1]));
+}
+
+TEST_CASE("single runs say nothing of scatter") {
+  CHECK_THROWS_WITH_AS(estimate_scatter(small_observables(), {Matrix::Zero(31, 1)}),
+                       "seed scatter needs two runs of the same parameters at least", calx::Error);
+}
