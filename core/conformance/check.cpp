@@ -63,7 +63,7 @@ class Runner {
     out.path = entries.front().path;
     const std::string file = std::filesystem::path(out.path).filename().string();
     printed_.clear();
-    if (!check_manifest(entries, file, out)) return out;
+    if (!check_manifest(entries, file, out) || !has_code(entries.front())) return out;
     const std::vector<Check> all = every_check();
     // Where one of these fails, every other check would tell the same once more.
     const auto stops = [&](const char* name) {
@@ -96,18 +96,27 @@ class Runner {
     return options_.only.empty() || options_.only == name || options_.only == kSilent;
   }
 
+  /// False for a manifest of effects that only edit a case.
+  static bool has_code(const PluginManifest& entry) { return !entry.library.empty() || !entry.text.empty(); }
+
   bool check_manifest(const std::vector<PluginManifest>& entries, const std::string& file, CheckedManifest& out) {
     CheckResult result = {kManifest, kManifestMeaning, file, CheckOutcome::passed, ""};
+    std::string fault;
     for (const PluginManifest& entry : entries)
-      if (!entry.refused.empty() && result.detail.empty()) result.detail = entry.refused;
-    if (result.detail.empty()) {
+      if (!entry.refused.empty() && fault.empty()) fault = entry.refused;
+    if (fault.empty() && !has_code(entries.front())) {
+      result.detail = "edits of a case alone, no library";
+    } else if (fault.empty()) {
       try {
         LibraryFile(entries.front().text.empty() ? entries.front().library : entries.front().text);
       } catch (const Refused& refused) {
-        result.detail = refused.reason;
+        fault = refused.reason;
       }
     }
-    if (!result.detail.empty()) result.outcome = CheckOutcome::failed;
+    if (!fault.empty()) {
+      result.outcome = CheckOutcome::failed;
+      result.detail = fault;
+    }
     if (wanted(kManifest) || result.outcome == CheckOutcome::failed) out.results.push_back(result);
     return result.outcome == CheckOutcome::passed;
   }

@@ -24,7 +24,7 @@ using nlohmann::json;
 const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",      "version", "vendor",
                                                 "license",     "plugins", "requires", "sha256"};
 const std::vector<std::string> plugin_keys = {"id",     "kind",      "summary", "effect", "text",
-                                               "symbol", "stiffness", "example", "surface"};
+                                              "symbol", "stiffness", "example", "surface"};
 
 /// "linux-x86_64": the key of this machine's library where a manifest names several.
 std::string platform() {

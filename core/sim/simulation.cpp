@@ -219,8 +219,8 @@ struct Simulation::Impl {
 Simulation::Simulation(CaseFile input, const SimulationOptions& options)
     : impl_(std::make_unique<Impl>(std::move(input))) {
   World& w = impl_->w;
-  // Beside the file of a case may lie laws that are a text; a library there is not looked at. A case without a file has no
-  // such folder: the working directory is never searched.
+  // Beside the file of a case may lie laws that are a text; a library there is not looked at. A case without a file has
+  // no such folder: the working directory is never searched.
   std::error_code none;
   PluginTrust trust;
   trust.pins_required = options.require_pins;

@@ -53,7 +53,8 @@ TEST_CASE("an unknown kind names the nearest one") {
       small_world().error_of("{}", "bulk-densty") ==
       "case.json /sensors/0/kind: unknown kind of sensor \"bulk-densty\"; did you mean \"bulk-density\"? Built in are "
       "mass, cycle-mass, flow, bulk-density, coordination, height-map, angle-of-repose, discharge, drum-surface, "
-      "inertial-number, residue, part-load, stress, cell-density, wall-friction, yield-locus, energy, mass-ledger; others "
+      "inertial-number, residue, part-load, stress, cell-density, wall-friction, yield-locus, energy, mass-ledger; "
+      "others "
       "are named by their plugin's id");
 }
 

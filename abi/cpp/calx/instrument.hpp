@@ -52,9 +52,17 @@ class Instrument : public Instance {
   }
   static calx_status CALX_CALL load(calx_instance* self, const calx_stream* stream, uint32_t schema) noexcept {
     std::vector<double>& m = static_cast<Instrument*>(self)->memory_;
-    const uint64_t size = m.size() * sizeof(double);
     if (schema != 1) return CALX_E_STATE;
-    return size == 0 || stream->read(stream, m.data(), size) == static_cast<int64_t>(size) ? CALX_OK : CALX_E_STATE;
+    std::vector<double> numbers(m.size());
+    unsigned char* to = reinterpret_cast<unsigned char*>(numbers.data());
+    const uint64_t size = m.size() * sizeof(double);
+    for (uint64_t done = 0; done < size;) {  // a read may give less than it was asked for
+      const int64_t got = stream->read(stream, to + done, size - done);
+      if (got <= 0) return CALX_E_STATE;
+      done += static_cast<uint64_t>(got);
+    }
+    m = numbers;
+    return CALX_OK;
   }
 
   std::vector<double> memory_;
