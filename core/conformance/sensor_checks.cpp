@@ -202,6 +202,12 @@ void exercise(Subject& s) {
   } else if (kind == CALX_MOTION) {
     calx_pose pose;
     static_cast<const calx_motion*>(instance->table(CALX_MOTION))->pose(instance->get(), 0.5, &pose);
+  } else if (kind == CALX_SERVO) {
+    calx_pose pose;
+    const auto& servo = *static_cast<const calx_servo*>(instance->table(CALX_SERVO));
+    const calx_servo_view view = {sizeof view, 0, 1e-5, 1e-5, {0, 0, -1}, {0, 0, 0}};
+    servo.advance(instance->get(), instance->host(), &view);
+    servo.pose(instance->get(), &pose);
   } else {
     calx_shape_sink sink{};
     sink.struct_size = sizeof sink;

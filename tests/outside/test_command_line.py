@@ -178,8 +178,10 @@ class CommandLine(CalxTest):
                 described = self.calx("plugin", "describe", name)
                 self.assertEqual((described.code, described.err), (0, ""))
                 self.assertRegex(described.out, rf"^{re.escape(name)} \d+\.\d+\.\d+\n\S.*\.\n")
-                if "calx.case-effect/1" not in described.out:  # it has no library
-                    self.assertRegex(described.out, r"(?m)^  sha256 +[0-9a-f]{64}$")
+                if "calx.case-effect/1" in described.out:  # it has no library
+                    self.fails(PLUGIN, "an effect of edits alone", result=self.calx("plugin", "schema", name))
+                    continue
+                self.assertRegex(described.out, r"(?m)^  sha256 +[0-9a-f]{64}$")
                 schema = json.loads(self.calx("plugin", "schema", name).out)
                 check_schema(schema)
                 self.assertEqual(schema["type"], "object")
