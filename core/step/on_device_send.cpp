@@ -82,11 +82,11 @@ void Engine::OnDevice::send_shapes() {
 
 void Engine::OnDevice::send_table(const StepTable& table, std::size_t first, std::size_t count) {
   Memory& m = *memory_;
-  const std::size_t parts = engine_.parts.size();
+  const std::size_t width = engine_.parts.size();
   std::vector<PartState> states;
   for (std::size_t step = first; step < first + (moving_ ? count : 1); ++step)
-    for (std::size_t k = 0; k < parts; ++k) {
-      const Pose& pose = table.poses[step * parts + k];
+    for (std::size_t k = 0; k < width; ++k) {
+      const Pose& pose = table.poses[step * width + k];
       states.push_back({pose.turn, pose.shift, pose.centre, pose.velocity, pose.spin, static_cast<std::uint32_t>(k),
                         engine_.parts[k].material});
     }
