@@ -135,9 +135,9 @@ class YieldLocusSensor : public StepSensor {
 }  // namespace
 
 std::unique_ptr<Sensor> make_yield_locus_sensor(SensorOptions& options) {
-  const std::vector<std::string> names = {"rest", "pre-shear", "shear"};
+  const std::vector<std::string> roles = {"rest", "pre-shear", "shear"};
   std::vector<Role> pattern;
-  for (const std::size_t role : options.choices("pattern", names)) pattern.push_back(static_cast<Role>(role));
+  for (const std::size_t role : options.choices("pattern", roles)) pattern.push_back(static_cast<Role>(role));
   if (pattern.empty()) pattern = {pre_shear, rest, shear};
   return std::make_unique<YieldLocusSensor>(options, std::move(pattern));
 }
