@@ -72,7 +72,7 @@ bool is_name(const std::string& name) {
 }
 
 EffectParameter parse_parameter(const Json& j, const std::string& where) {
-  check_keys(j, where, {"name", "unit", "off", "preset", "scale", "sign", "range", "doc"});
+  check_keys(j, where, {"name", "unit", "off", "preset", "scale", "sign", "range", "doc", "direction_of"});
   EffectParameter p;
   p.name = text(j, "name", where, "a name");
   if (!is_name(p.name)) refuse(where + "/name", "\"" + p.name + "\"; must be of a-z, 0-9 and _");
@@ -92,6 +92,10 @@ EffectParameter parse_parameter(const Json& j, const std::string& where) {
     if (!(p.scale > 0)) refuse(where + "/scale", shown(j["scale"]) + "; must be above 0");
   } else if (j.count("scale")) {
     refuse(where + "/scale", "is for parameters with an \"off\" value");
+  }
+  if (j.count("direction_of")) {
+    p.direction_of = text(j, "direction_of", where, "the amplitude that the angle turns");
+    if (p.is_amplitude || p.unit != "deg") refuse(where + "/direction_of", "is for angles in deg with a \"preset\"");
   }
   if (j.count("sign")) {
     const std::string sign = text(j, "sign", where, "one of " + quoted_list(signs));
@@ -288,6 +292,13 @@ EffectInfo parse_effect(const std::string& source, const std::string& where) {
   if (std::none_of(effect.parameters.begin(), effect.parameters.end(),
                    [](const EffectParameter& p) { return p.is_amplitude; }))
     refuse(where + "/parameters", "none has an \"off\" value, so the effect cannot be switched off");
+  for (std::size_t k = 0; k < effect.parameters.size(); ++k) {
+    const std::string& turned = effect.parameters[k].direction_of;
+    const EffectParameter* amplitude = effect.parameter(turned);
+    if (!turned.empty() && !(amplitude && amplitude->is_amplitude))
+      refuse(where + "/parameters" + pointer_token(k) + "/direction_of",
+             "\"" + turned + "\" is no parameter of the effect with an \"off\" value");
+  }
   const Json& roles = list("roles", false);
   for (std::size_t k = 0; k < roles.size(); ++k) {
     const std::string at = where + "/roles" + pointer_token(k);

@@ -13,6 +13,7 @@ namespace calx {
 struct EffectParameter {
   enum class Sign { any, positive, negative };  // side of off that physics allows
   std::string name, unit, doc;
+  std::string direction_of;  // an angle that turns this amplitude, 0 along its preset; empty: none
   bool is_amplitude = true;
   double off = 0, scale = 0;  // scale: a typical strength, as distance from off; 0 for what is no amplitude
   Sign sign = Sign::any;

@@ -77,9 +77,9 @@ Budget error_budget(const LinearModel& model, const Options& options) {
     Matrix bias = Matrix::Ones(1, 1);
     if (n > 1) bias = 0.5 * Matrix::Identity(n, n) + 0.5 * smooth_kernel(all.blocks[b], 0.25);
     const Matrix constant = 0.5 * (Matrix::Ones(n, n) + bias);
+    const double declared = all.blocks[b].tolerance, tolerance = declared < 0 ? options.tolerance : declared;
     budget.systematic.block(first, first, n, n) +=
-        sd.asDiagonal() *
-        (options.tolerance * options.tolerance * bias + options.numerical * options.numerical * constant) *
+        sd.asDiagonal() * (tolerance * tolerance * bias + options.numerical * options.numerical * constant) *
         sd.asDiagonal();
   }
   const MeasurementNoise noise = estimate_noise(all, options);

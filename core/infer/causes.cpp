@@ -119,14 +119,37 @@ Matrix shape_columns(const Observables& observables, const Vector& signature, do
   return all;
 }
 
+Matrix noise_columns(const LinearModel& model, std::size_t effect, const Options& options) {
+  const Observables& all = model.observables;
+  Matrix out = Matrix::Zero(all.rows(), 0);
+  if (!options.signature_noise || model.signature_variance[effect] <= 0) return out;
+  const double sd = std::sqrt(model.signature_variance[effect]);
+  for (std::size_t b = 0; b < all.blocks.size(); ++b) {
+    const int first = all.first(b), n = all.size(b);
+    if (model.signatures[effect].middleRows(first, n).isZero(0)) continue;
+    Matrix smooth = n > 1 ? low_rank(smooth_kernel(all.blocks[b], 0.3), 1e-2) : Matrix::Ones(1, 1);
+    smooth.colwise().normalize();
+    out.conservativeResize(Eigen::NoChange, out.cols() + smooth.cols() + 1);
+    out.rightCols(smooth.cols() + 1).setZero();
+    out.block(first, out.cols() - 1, n, 1) = sd * model.scatter.common[b] * all.blocks[b].sd;
+    out.block(first, out.cols() - 1 - smooth.cols(), n, smooth.cols()) =
+        sd * model.scatter.white[b] * all.blocks[b].sd.asDiagonal() * smooth;
+  }
+  return out;
+}
+
 Signature whiten_signature(const LinearModel& model, std::size_t effect, const Metric& metric, const Options& options) {
   const Effect& e = model.effects[effect];
   Signature s;
   s.scale = e.scale, s.one_sided = e.one_sided;
   s.columns = metric.whiten(model.signatures[effect]);
-  for (int c = 0; c < e.components; ++c)
-    s.shape.push_back(
-        metric.whiten(shape_columns(model.observables, model.signatures[effect].col(c), e.scale, 1, options)));
+  const Matrix noise = noise_columns(model, effect, options);
+  for (int c = 0; c < e.components; ++c) {
+    const Matrix shape = shape_columns(model.observables, model.signatures[effect].col(c), e.scale, 1, options);
+    Matrix both(shape.rows(), shape.cols() + noise.cols());
+    both << shape, noise;
+    s.shape.push_back(metric.whiten(both));
+  }
   return s;
 }
 

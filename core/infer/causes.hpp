@@ -20,6 +20,9 @@ struct Signature {
 /// signature stays far below the noise need none. factor: over options.shape.
 Matrix shape_columns(const Observables& observables, const Vector& signature, double scale, double factor,
                      const Options& options);
+/// What the scatter of the runs behind a signature leaves in it after denoising, per unit of amplitude, unwhitened: per
+/// block a constant and a few smooth columns. None without options.signature_noise and for instruments.
+Matrix noise_columns(const LinearModel& model, std::size_t effect, const Options& options);
 Signature whiten_signature(const LinearModel& model, std::size_t effect, const Metric& metric, const Options& options);
 
 struct SingleFit {

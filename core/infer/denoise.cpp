@@ -47,6 +47,7 @@ Vector Denoiser::operator()(const Vector& response, double variance, double* log
   Vector clean = Vector::Zero(response.size());
   for (const Part& part : parts_) {
     const int n = part.size;
+    if (response.segment(part.first, n).isZero(0)) continue;
     const Vector y = whiten(response.segment(part.first, n).cwiseQuotient(part.sd), part.white, part.alpha);
     const bool has_white = n >= 3;
     const double models = static_cast<double>(strengths.size() * (part.kernels.size() + (has_white ? 1 : 0)));

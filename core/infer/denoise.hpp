@@ -11,8 +11,9 @@ namespace calx::infer {
 class Denoiser {
  public:
   Denoiser(const Observables& observables, const SeedScatter& scatter);
-  /// response: difference of runs; its noise covariance is variance times that of one run. Returns the cleaned
-  /// response; log_evidence, where not null, gets the log density of the response under the mixture added.
+  /// response: difference of runs; its noise covariance is variance times that of one run. A block that is exactly zero
+  /// was not run again: it stays zero and says nothing. Returns the cleaned response; log_evidence, where not null,
+  /// gets the log density of the response under the mixture added.
   Vector operator()(const Vector& response, double variance, double* log_evidence = nullptr) const;
 
  private:

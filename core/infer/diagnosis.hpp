@@ -34,6 +34,10 @@ struct Diagnosis {
 /// instrument effects cost none.
 void refine(LinearModel& model, const Bank& bank, Simulator& simulator, const Options& options);
 
+/// Moves the place where the model is linear to u: base runs there with so many new seeds, and a new partner.
+/// Signatures and sensitivities stay. For a leading effect whose nuisance parameters lie elsewhere than without it.
+void rebase(LinearModel& model, const Vector& u, int seeds, Simulator& simulator, const Options& options);
+
 /// Deterministic from the seed of the options. A cause is named only if its probability is above options.name_above,
 /// the fit test does not refuse it, and it predicts the held-out campaign better than the recalibrated old model.
 Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& options);

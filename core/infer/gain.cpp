@@ -65,6 +65,8 @@ Freedom freedom_of(const LinearModel& model, const std::vector<Part>& parts, con
     freedom.columns.rightCols(g.cols()) = scale * g;
     const Matrix b = shape_columns(model.observables, g * part.amplitude, 1, part.shape_factor, options);
     freedom.own += b * b.transpose();
+    const Matrix noise = part.amplitude.norm() * noise_columns(model, part.effect, options);
+    freedom.own += noise * noise.transpose();
   }
   return freedom;
 }

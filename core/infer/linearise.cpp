@@ -32,11 +32,18 @@ double estimate_common(const Denoiser& denoise, const std::vector<Vector>& chang
 
 }  // namespace
 
-Vector LinearModel::response(const Vector& run) const { return run - base - common_numbers * (partner - base); }
+Vector LinearModel::response(const Vector& run, const Vector& partner_run) const {
+  Vector out = run - base - common_numbers * (partner_run - base);
+  for (std::size_t b = 0; b < observables.blocks.size(); ++b) {
+    const int first = observables.first(b), n = observables.size(b);
+    if (run.segment(first, n) == partner_run.segment(first, n)) out.segment(first, n).setZero();
+  }
+  return out;
+}
 
-double LinearModel::response_variance() const {
+double LinearModel::response_variance(int seeds) const {
   const double rho = common_numbers;
-  return 1 - rho * rho + (1 - rho) * (1 - rho) * base_weight;
+  return (1 - rho * rho) / seeds + (1 - rho) * (1 - rho) * base_weight;
 }
 
 int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options) {
@@ -62,7 +69,9 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   double trace = p, moved = 0;
 
   for (std::size_t pass = 0; pass < options.base_runs.size(); ++pass) {
+    model.base_seed = seed;
     groups.push_back(simulator.run(base_points(model.u, options.base_runs[pass], seed)));
+    model.base_columns = groups.back();
     places.push_back(model.u);
     model.scatter = estimate_scatter(observables, groups);
     if (pass == 0) {
@@ -105,7 +114,8 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
                         options.step_scales * effects[e].scale * Vector::Unit(effects[e].components, c), common_seed});
   const Matrix runs = simulator.run(points);
   std::vector<Vector> changed;
-  for (int k = 1; k < runs.cols(); ++k) changed.push_back(runs.col(k));
+  // An effect that cannot be run leaves no signature.
+  for (int k = 1; k < runs.cols(); ++k) changed.push_back(runs.col(k).allFinite() ? runs.col(k) : runs.col(0));
   const Denoiser denoise(observables, model.scatter);
   model.partner = runs.col(0);
   model.common_numbers =
@@ -125,6 +135,8 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
       }
     }
     model.signatures.push_back(columns);
+    const double step_size = options.step_scales * effects[e].scale;
+    model.signature_variance.push_back(effects[e].instrument ? 0 : model.response_variance() / (step_size * step_size));
   }
   for (int k = 0; k < p; ++k)
     model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * step * step));

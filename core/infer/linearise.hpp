@@ -17,16 +17,21 @@ struct LinearModel {
   Matrix sensitivities;            // one column per nuisance parameter, per prior sd
   std::vector<Matrix> signatures;  // per effect, a column per component, per unit of amplitude
   SeedScatter scatter;
-  double common_numbers = 0;      // correlation of runs of one seed
-  Vector partner;                 // run at u without effects, of the seed that all runs with effects share
-  double base_weight = 1;         // variance of the base mean over that of one run
-  double sensitivity_weight = 0;  // variance of J (u' - u) over that of one run, at the posterior of u'
+  double common_numbers = 0;               // correlation of runs of one seed
+  Vector partner;                          // run at u without effects, of the seed that all runs with effects share
+  Matrix base_columns;                     // runs of the last base pass, at u, a column each
+  std::uint64_t base_seed = 0;             // of the first of them; the others follow
+  std::vector<double> signature_variance;  // per effect, of a unit of amplitude over that of one run; 0: exact
+  double base_weight = 1;                  // variance of the base mean over that of one run
+  double sensitivity_weight = 0;           // variance of J (u' - u) over that of one run, at the posterior of u'
   int runs = 0;
 
   /// Response in a run of the partner's seed: the run less what the partner foretells of it, a control variate. Its
-  /// noise covariance is response_variance times that of one run.
-  Vector response(const Vector& run) const;
-  double response_variance() const;
+  /// noise covariance is response_variance times that of one run. Zero in blocks where the run is the partner itself,
+  /// because the change cannot reach them.
+  Vector response(const Vector& run) const { return response(run, partner); }
+  Vector response(const Vector& run, const Vector& partner_run) const;
+  double response_variance(int seeds = 1) const;  // of the mean response over so many seeds
 };
 
 /// Number of runs of a plan, refinement included.

@@ -17,6 +17,7 @@ struct Block {
   Vector sd;                   // declared measurement sd of each number, same unit as the numbers
   double autocorrelation = 0;  // lag-one correlation of the measurement noise along the index, -1..1
   bool ordered = false;        // the index is time or cycle, along which something can change abruptly
+  double tolerance = -1;       // sd of what the model may miss, in declared sd; below zero: that of the options
   Vector fit, hold;            // measured numbers of the campaign that is fitted and of the one held out; empty: none
 };
 

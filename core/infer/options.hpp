@@ -14,14 +14,16 @@ struct Options {
   std::vector<int> base_runs = {3, 3, 9};  // with independent seeds, before each of the re-based fits
   double step_scales = 2;                  // amplitude of an effect's run, in its scales
   int refined = 3;                         // effects run again at their fitted amplitudes
+  int refined_runs = 1;                    // seeds of each of these
   double common_numbers = -1;              // correlation of runs of one seed, 0..1; -1: estimate it
 
   // Error budget, in declared measurement sd.
-  double tolerance = 0.35;      // of the model, half white and half smooth
-  double numerical = 0.3;       // time step, scale, domain: constant or smooth per block
-  double declared_error = 0.2;  // relative uncertainty of each declared sd
-  double shape = 0.3;           // relative uncertainty of a signature's shape
-  double shape_length = 0.35;   // of the index
+  double tolerance = 0.35;       // of the model, half white and half smooth
+  double numerical = 0.3;        // time step, scale, domain: constant or smooth per block
+  double declared_error = 0.2;   // relative uncertainty of each declared sd
+  double shape = 0.3;            // relative uncertainty of a signature's shape
+  double shape_length = 0.35;    // of the index
+  bool signature_noise = false;  // what is left of the scatter of the runs behind a signature
 
   // Prior shares: nothing, one effect, two effects, something outside the library.
   double prior_none = 0.35, prior_single = 0.40, prior_pair = 0.05, prior_unknown = 0.20;

@@ -20,6 +20,8 @@ void refine(LinearModel& model, const Bank& bank, Simulator& simulator, const Op
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return posterior.fits[a].odds > posterior.fits[b].odds; });
+  // Seeds after the first are those of the base runs at the same place, which are their partners.
+  const int seeds = std::min(options.refined_runs, 1 + static_cast<int>(model.base_columns.cols()));
   std::vector<RunPoint> points;
   std::vector<std::size_t> again;
   const auto correct = [&](std::size_t e, const Vector& response, double variance) {
@@ -27,6 +29,7 @@ void refine(LinearModel& model, const Bank& bank, Simulator& simulator, const Op
     const Vector curved = response - model.signatures[e] * a;
     const Vector change = variance > 0 ? Denoiser(model.observables, model.scatter)(curved, variance) : curved;
     model.signatures[e] += change * a.transpose() / a.squaredNorm();
+    model.signature_variance[e] = std::min(model.signature_variance[e], variance / a.squaredNorm());
   };
   for (std::size_t e : order) {
     const Vector& a = posterior.fits[e].amplitude;
@@ -34,14 +37,49 @@ void refine(LinearModel& model, const Bank& bank, Simulator& simulator, const Op
     const RunPoint point{model.u, static_cast<int>(e), a, common_seed};
     if (model.effects[e].instrument)
       correct(e, simulator.instrument(point), 0);
-    else if (static_cast<int>(points.size()) < options.refined)
+    else if (static_cast<int>(again.size()) < options.refined) {
       points.push_back(point), again.push_back(e);
+      for (int s = 1; s < seeds; ++s) {
+        points.push_back(point);
+        points.back().seed = model.base_seed + static_cast<std::uint64_t>(s - 1);
+      }
+    }
   }
   if (points.empty()) return;
   const Matrix runs = simulator.run(points);
-  for (std::size_t k = 0; k < again.size(); ++k)
-    correct(again[k], model.response(runs.col(static_cast<Eigen::Index>(k))), model.response_variance());
+  Eigen::Index column = 0;
+  for (const std::size_t e : again) {
+    // What cannot be run at its fitted amplitude keeps the signature it has.
+    if (!runs.middleCols(column, seeds).allFinite()) {
+      column += seeds;
+      continue;
+    }
+    Vector response = Vector::Zero(model.base.size());
+    for (int s = 0; s < seeds; ++s, ++column) {
+      const Vector partner = s == 0 ? model.partner : Vector(model.base_columns.col(s - 1));
+      response += model.response(runs.col(column), partner) / seeds;
+    }
+    correct(e, response, model.response_variance(seeds));
+  }
   model.runs += static_cast<int>(points.size());
+}
+
+void rebase(LinearModel& model, const Vector& u, int seeds, Simulator& simulator, const Options& options) {
+  const std::uint64_t first = model.base_seed + static_cast<std::uint64_t>(model.base_columns.cols());
+  std::vector<RunPoint> points = {{u, -1, {}, options.seed * 1000}};
+  for (int s = 0; s < seeds; ++s) points.push_back({u, -1, {}, first + static_cast<std::uint64_t>(s)});
+  const Matrix runs = simulator.run(points);
+  // As in linearise: what was known counts the less the farther away it was learnt.
+  const double near = (u - model.u).squaredNorm(), old = 1 / (model.base_weight + near), count = seeds;
+  model.base_columns = runs.rightCols(seeds);
+  model.base =
+      (old * (model.base + model.sensitivities * (u - model.u)) + count * model.base_columns.rowwise().mean()) /
+      (old + count);
+  model.base_weight = (old * old * model.base_weight + count) / ((old + count) * (old + count));
+  model.partner = runs.col(0);
+  model.base_seed = first;
+  model.u = u;
+  model.runs += 1 + seeds;
 }
 
 }  // namespace calx::infer

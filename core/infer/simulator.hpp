@@ -30,7 +30,8 @@ class Simulator {
   virtual ~Simulator() = default;
   /// Number of nuisance parameters.
   virtual int parameters() const = 0;
-  /// One column per point, one row per number of the observables. Pure: a point gives the same numbers every time.
+  /// One column per point, one row per number of the observables. Pure: a point gives the same numbers every time. A
+  /// column of NaN: the run with this effect cannot be made at this amplitude; others must be finite.
   virtual Matrix run(const std::vector<RunPoint>& points) = 0;
   /// Change of the observables by an instrument effect, exact: applied to the recorded series of the run without it.
   virtual Vector instrument(const RunPoint& point) = 0;

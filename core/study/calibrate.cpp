@@ -61,6 +61,7 @@ class Calibrator {
   }
 
   Calibration go() {
+    if (d_ == 0) throw Error(Fault::settings, study_.file + " /parameters: is empty; at least one parameter is needed");
     const std::vector<std::size_t> plan = plan_waves();
     for (std::size_t w = 0; w < plan.size(); ++w) {
       if (plan[w] == 0) continue;

@@ -12,6 +12,7 @@
 #include "base/version.hpp"
 #include "io/io.hpp"
 #include "study/calibrate.hpp"
+#include "study/csv_cell.hpp"
 #include "study/resolve.hpp"
 
 namespace calx {
@@ -155,21 +156,15 @@ std::string cost_json(const Study& study, const Calibration& c) {
   return j.dump(2) + "\n";
 }
 
-std::string cell(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c == '\n' ? ' ' : c);
-  return out + "\"";
-}
-
 std::string runs_csv(const Study& study, const Calibration& c) {
   std::string out = "wave,place,case,reduced,seed,cached,wall_s,folder,error";
-  for (const StudyParameter& p : study.parameters) out += "," + cell(p.name);
+  for (const StudyParameter& p : study.parameters) out += "," + csv_cell(p.name);
   out += "\n";
   for (const RunRow& r : c.runs) {
-    out += std::to_string(r.wave) + "," + std::to_string(r.place) + "," + cell(r.case_name) + "," +
+    out += std::to_string(r.wave) + "," + std::to_string(r.place) + "," + csv_cell(r.case_name) + "," +
            (r.reduced ? "1," : "0,") + std::to_string(r.seed) + "," + (r.cached ? "1," : "0,") +
            format_number(r.wall_seconds) + "," + std::filesystem::path(r.folder).filename().string() + "," +
-           cell(r.error);
+           csv_cell(r.error);
     for (const double v : r.values) out += "," + format_number(v);
     out += "\n";
   }
@@ -178,7 +173,7 @@ std::string runs_csv(const Study& study, const Calibration& c) {
 
 std::string samples_csv(const Study& study, const Calibration& c) {
   std::string out;
-  for (const StudyParameter& p : study.parameters) out += cell(p.name) + ",";
+  for (const StudyParameter& p : study.parameters) out += csv_cell(p.name) + ",";
   out += "log_density\n";
   for (Eigen::Index k = 0; k < c.samples.rows(); ++k) {
     for (Eigen::Index j = 0; j < c.samples.cols(); ++j) out += format_number(c.samples(k, j)) + ",";

@@ -9,4 +9,11 @@ namespace calx {
 /// Fault::settings or of the kind the case gives, naming the place in the study.
 void check_cases(const Study& study);
 
+/// Checks that the case of a reading has its sensor and columns. pointer: where the reading stands in the study. Throws
+/// as check_cases does.
+void check_reading(const Study& study, const StudyObservable& reading, const std::string& pointer);
+
+/// Builds the world of one run. Throws what reading the case and building it throw.
+void try_run(const RunRequest& request, const std::vector<std::string>& plugin_path);
+
 }  // namespace calx

@@ -48,6 +48,7 @@ void from_repeats(const Node& node, const std::vector<double>& values, const Noi
   for (const double v : values) square += (v - mean) * (v - mean);
   data.y = {mean};
   data.repeats = values.size();
+  for (const double v : values) data.each.push_back({v});
   if (noise.given) {
     data.sd = {sd_at(noise, mean)};
     return;
@@ -149,6 +150,7 @@ void from_file(Object& m, const Node& file_node, StudyObservable& o) {
   }
   data.x = repeats[0].x;
   data.repeats = repeats.size();
+  for (const Repeat& r : repeats) data.each.push_back(r.y);
   for (std::size_t k = 1; k < repeats.size(); ++k)
     if (repeats[k].x != data.x)
       file_node.fail("repeat " + std::to_string(k + 1) + " of " + given +
@@ -186,7 +188,7 @@ void from_values(Object& m, const Node& node, const std::vector<double>& at, Stu
   if (at.empty()) {
     if (!o.against.empty()) node.fail("a curve needs \"at\", the places of its values, or a \"file\"");
     from_repeats(many ? *many : *one, y, noise, data);
-    if (!many) data.repeats = repeats;
+    if (!many) data.repeats = repeats, data.each.clear();
     return;
   }
   if (o.against.empty()) node.fail("\"at\" needs \"against\", the column it belongs to");

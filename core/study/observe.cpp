@@ -59,22 +59,22 @@ Series series_of(const std::string& folder, const StudyObservable& o) {
   return out;
 }
 
-double passing(const Series& s, double x) {
-  for (std::size_t k = 0; k < s.x.size(); ++k) {
-    if (s.x[k] == x) return s.y[k];  // the very place, so that no neighbour is needed
-    if (k == 0 || !((s.x[k - 1] < x && x < s.x[k]) || (s.x[k] < x && x < s.x[k - 1]))) continue;
-    const double share = (x - s.x[k - 1]) / (s.x[k] - s.x[k - 1]);
-    return s.y[k - 1] + share * (s.y[k] - s.y[k - 1]);
+}  // namespace
+
+double passing(const std::vector<double>& xs, const std::vector<double>& ys, double x) {
+  for (std::size_t k = 0; k < xs.size(); ++k) {
+    if (xs[k] == x) return ys[k];  // the very place, so that no neighbour is needed
+    if (k == 0 || !((xs[k - 1] < x && x < xs[k]) || (xs[k] < x && x < xs[k - 1]))) continue;
+    const double share = (x - xs[k - 1]) / (xs[k] - xs[k - 1]);
+    return ys[k - 1] + share * (ys[k] - ys[k - 1]);
   }
   // Samples are taken in the step nearest to their time, so that the last one of a run to 2 s may stand at 1.99999 s.
-  const std::size_t n = s.x.size();
+  const std::size_t n = xs.size();
   if (n < 2) return kNone;
-  if (std::fabs(x - s.x[n - 1]) <= 0.5 * std::fabs(s.x[n - 1] - s.x[n - 2])) return s.y[n - 1];
-  if (std::fabs(x - s.x[0]) <= 0.5 * std::fabs(s.x[1] - s.x[0])) return s.y[0];
+  if (std::fabs(x - xs[n - 1]) <= 0.5 * std::fabs(xs[n - 1] - xs[n - 2])) return ys[n - 1];
+  if (std::fabs(x - xs[0]) <= 0.5 * std::fabs(xs[1] - xs[0])) return ys[0];
   return kNone;
 }
-
-}  // namespace
 
 std::vector<double> observe(const std::string& folder, const StudyObservable& o) {
   if (o.against.empty()) {
@@ -84,7 +84,7 @@ std::vector<double> observe(const std::string& folder, const StudyObservable& o)
   }
   const Series series = series_of(folder, o);
   std::vector<double> out;
-  for (const double x : o.measured.x) out.push_back(o.factor * passing(series, x));
+  for (const double x : o.measured.x) out.push_back(o.factor * passing(series.x, series.y, x));
   return out;
 }
 

@@ -13,4 +13,7 @@ namespace calx {
 /// or a curve of fields.json. Throws Error(Fault::files) for a folder without them.
 std::vector<double> observe(const std::string& folder, const StudyObservable& observable);
 
+/// y where a series first passes x, between its places; beyond its ends by half a sample, the end; else NaN.
+double passing(const std::vector<double>& xs, const std::vector<double>& ys, double x);
+
 }  // namespace calx

@@ -66,7 +66,8 @@ class StudyReader {
     keep("effects", study_.effects);
     keep("experiments", study_.experiments);
     keep("roles", study_.roles);
-    keep("instruments", study_.instruments);
+    keep("claims", study_.claims);
+    study_.named_effects_only = root.choice("library", "a library of effects", {"calx", "named"}, 0) == 1;
     root.done();
     return study_;
   }
@@ -118,7 +119,6 @@ class StudyReader {
       o.done();
       study_.parameters.push_back(p);
     }
-    if (study_.parameters.empty()) list.fail("is empty; at least one parameter is needed");
   }
 
   static void read_range(Object& o, StudyParameter& p) {
@@ -174,6 +174,7 @@ class StudyReader {
       b.use = o.choice("use", "a use", {"fit", "hold-out"}, 0) == 0 ? StudyObservable::Use::fit
                                                                     : StudyObservable::Use::hold_out;
       read_measured(o, b);
+      if (const auto n = o.find("simulated")) read_simulated(*n, b);
       for (const auto& c : o.section("conditions", "numbers by name").entries())
         b.conditions.emplace_back(c.first, c.second.number("1"));
       o.done();
@@ -182,6 +183,16 @@ class StudyReader {
     const auto fits = [](const StudyObservable& b) { return b.use == StudyObservable::Use::fit; };
     if (std::none_of(study_.observables.begin(), study_.observables.end(), fits))
       list.fail("holds no observable of \"use\": \"fit\"; at least one is needed");
+  }
+
+  static void read_simulated(const Node& node, StudyObservable& b) {
+    if (node.json().is_array())
+      for (const Node& n : node.items("numbers")) b.simulated.push_back(n.number(b.unit));
+    else
+      b.simulated = {node.number(b.unit)};
+    if (b.simulated.size() != b.measured.y.size())
+      node.fail("holds " + std::to_string(b.simulated.size()) + " values for " + std::to_string(b.measured.y.size()) +
+                " measured");
   }
 
   void read_executor(Object& root) {
@@ -239,6 +250,18 @@ Study read_study(const std::string& path, const std::vector<std::string>& plugin
   study.executor.plugin_path = plugin_path;
   check_cases(study);
   return study;
+}
+
+double prior_mean(const StudyParameter& p) {
+  return p.prior == StudyParameter::Prior::normal ? p.mean : 0.5 * (p.low + p.high);
+}
+
+double prior_sd(const StudyParameter& p) {
+  return p.prior == StudyParameter::Prior::normal ? p.sd : (p.high - p.low) / std::sqrt(12.0);
+}
+
+double parameter_value(const StudyParameter& p, double standardised) {
+  return std::clamp(prior_mean(p) + standardised * prior_sd(p), p.low, p.high);
 }
 
 const StudyCase& case_of(const Study& study, const std::string& name) {

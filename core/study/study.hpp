@@ -30,13 +30,14 @@ struct StudyParameter {
 
 /// What was measured, in the unit of the observable. Scalars have one value and no x.
 struct MeasuredData {
-  std::vector<double> x;      // in the unit of the column it is measured against
-  std::vector<double> y;      // mean over repeats
-  std::vector<double> sd;     // of one repeat
-  std::size_t repeats = 1;    // values averaged in y
-  double correlation = 0;     // of neighbouring points of one repeat (autocorrelation)
-  bool sd_estimated = false;  // sd comes from the repeats themselves
-  std::string source;         // file, for reports; empty: stands in the study
+  std::vector<double> x;                  // in the unit of the column it is measured against
+  std::vector<double> y;                  // mean over repeats
+  std::vector<double> sd;                 // of one repeat
+  std::size_t repeats = 1;                // values averaged in y
+  std::vector<std::vector<double>> each;  // every repeat, as y; empty where only the mean is known
+  double correlation = 0;                 // of neighbouring points of one repeat (autocorrelation)
+  bool sd_estimated = false;              // sd comes from the repeats themselves
+  std::string source;                     // file, for reports; empty: stands in the study
 };
 
 struct StudyObservable {
@@ -46,6 +47,7 @@ struct StudyObservable {
   double factor = 1;                               // value in unit = factor * value of the column
   enum class Use { fit, hold_out } use = Use::fit;
   MeasuredData measured;
+  std::vector<double> simulated;  // by another program, at the prior of the parameters: the diagnosis is of that one
   double tolerance = 0;  // sd of what the model may miss, in unit: declared, or 0.35 of the mean sd of one repeat
   std::vector<std::pair<std::string, double>> conditions;
 };
@@ -60,8 +62,9 @@ struct Study {
   ExecutorSettings executor;
   std::uint64_t seed = 1;
   std::vector<std::string> assumptions;
-  std::string effects = "[]", experiments = "[]", roles = "{}", instruments = "{}";  // JSON text, diagnosis reads them
-  std::string text;                                                                  // of the file, for its hash
+  std::string effects = "[]", experiments = "[]", roles = "{}", claims = "[]";  // JSON text that the diagnosis reads
+  bool named_effects_only = false;                                              // of the library of candidate causes
+  std::string text;                                                             // of the file, for its hash
 };
 
 /// Reads and checks a study, its cases (read, not run: every sensor and column must exist) and its measured data.
@@ -72,6 +75,12 @@ Study read_study(const std::string& path, const std::vector<std::string>& plugin
 
 /// Every kind of observable that a study may name, with what it is.
 const std::vector<std::pair<std::string, std::string>>& observable_kinds();
+
+/// Mean and standard deviation of the prior as a diagnosis standardises by; of a uniform one, those of its range.
+double prior_mean(const StudyParameter& p);
+double prior_sd(const StudyParameter& p);
+/// Of so many prior standard deviations from the mean, kept in the range; in the parameter's unit.
+double parameter_value(const StudyParameter& p, double standardised);
 
 const StudyCase& case_of(const Study& study, const std::string& name);
 

@@ -13,6 +13,7 @@
 #include "bench.hpp"
 #include "calibrate.hpp"
 #include "calx/abi.h"
+#include "diagnose.hpp"
 #include "last_words.hpp"
 #include "options.hpp"
 #include "paper.hpp"
@@ -204,6 +205,7 @@ int main(int argc, char** argv) {
   calx::add_plugin_command(app);
   calx::add_bench_command(app);
   calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);
+  calx::add_diagnose_command(app, run_flags.json, stop_requested, catch_signals);
   calx::add_paper_command(app);
   return guarded(app, run_flags.json, argc, argv);
 }

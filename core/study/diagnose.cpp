@@ -1,0 +1,445 @@
+// diagnose.cpp: the order of a diagnosis: plan, runs, linear model, verdict, self-test, confirmation, what to measure
+// next. The mathematics is in infer/.
+#include "study/diagnose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "base/units.hpp"
+#include "config/document.hpp"
+#include "config/node.hpp"
+#include "study/next_measurements.hpp"
+#include "study/surrogate.hpp"
+
+namespace calx {
+namespace {
+
+using infer::Matrix;
+using infer::Vector;
+
+/// Runs of a plan: seeds of the base in each pass, effects run again at their fitted strength, rounds where base and
+/// leading effects are run again where the leading one puts the parameters, seeds of base and effects in each, seeds of
+/// each side of the confirmation.
+struct Plan {
+  std::vector<int> base;
+  int refined, rounds, rebased, leading;
+  std::size_t confirmed;
+};
+const std::array<Plan, 6> plans = {{{{6, 6, 10}, 6, 4, 8, 6, 8},
+                                    {{4, 4, 6}, 4, 3, 6, 4, 6},
+                                    {{3, 3, 4}, 3, 3, 4, 3, 4},
+                                    {{3, 2, 3}, 2, 2, 4, 3, 3},
+                                    {{2, 2, 2}, 1, 1, 3, 2, 2},
+                                    {{2, 2}, 0, 0, 0, 0, 2}}};
+constexpr int leaders = 2;
+
+/// Data sets of the self-test per cause and strength, and strengths in scales of the cause.
+constexpr int self_test_studies = 24;
+const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
+constexpr std::size_t self_test_causes = 3;
+
+constexpr double least_improvement = 0.05;  // of the held-out error, for an extension to be worth having
+constexpr std::uint64_t confirmation_seeds = 700;
+
+std::size_t used_cases(const Study& study, const std::vector<StudyObservable>& readings, bool reduced_only) {
+  return static_cast<std::size_t>(std::count_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& c) {
+    return (!reduced_only || !c.reduced.empty()) &&
+           std::any_of(readings.begin(), readings.end(),
+                       [&](const StudyObservable& o) { return o.case_name == c.name; });
+  }));
+}
+
+std::size_t runs_of(const Study& study, const Library& library, const Plan& plan) {
+  const std::size_t cases = used_cases(study, study.observables, false);
+  std::size_t runs = cases;  // the partner of the runs with effects
+  for (const int n : plan.base) runs += static_cast<std::size_t>(n) * cases;
+  bool some_leave_a_case = false;
+  for (const StudyParameter& p : study.parameters) {
+    const std::size_t reached = std::min(p.cases.size(), cases);
+    runs += 2 * reached;
+    some_leave_a_case = some_leave_a_case || reached < cases;
+  }
+  if (some_leave_a_case) runs += cases;
+  std::size_t most = 0;
+  for (const Candidate& c : library.candidates) {
+    if (c.info.is_instrument) continue;
+    const auto reached = static_cast<std::size_t>(std::count(c.cases.begin(), c.cases.end(), true));
+    runs += static_cast<std::size_t>(c.effect.components) * reached;
+    most = std::max(most, reached);
+  }
+  runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
+  if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
+  runs += 2 * plan.confirmed * cases;
+  // Two runs of each full case carry what the reduced ones say.
+  return runs + 2 * used_cases(study, study.observables, true);
+}
+
+/// The richest plan that the budget pays for.
+Plan plan_of(const Study& study, const Library& library, std::size_t* planned) {
+  for (const Plan& plan : plans) {
+    *planned = runs_of(study, library, plan);
+    if (*planned <= study.budget) return plan;
+  }
+  throw Error(Fault::settings, study.file + " /budget/runs: " + std::to_string(study.budget) + " runs are too few; " +
+                                   std::to_string(library.candidates.size()) + " candidate causes and " +
+                                   std::to_string(study.parameters.size()) + " parameters need " +
+                                   std::to_string(*planned) + " at least. Give --budget " + std::to_string(*planned) +
+                                   ", or name fewer effects and say \"library\": \"named\"");
+}
+
+class Diagnoser {
+ public:
+  Diagnoser(const Study& study, Executor& executor, const ProgressSink& sink)
+      : study_(study), executor_(executor), sink_(sink) {}
+
+  StudyDiagnosis go() {
+    d_.measured = measured_blocks(study_);
+    const std::vector<PossibleMeasurement> possible = read_experiments(study_);
+    say("looking for effects that fit the cases of the study");
+    d_.library = find_library(study_, d_.options.step_scales);
+    plan_ = plan_of(study_, d_.library, &d_.ledger.planned);
+    d_.options.seed = study_.seed;
+    d_.options.signature_noise = true;
+    d_.options.base_runs = plan_.base;
+    d_.options.refined = plan_.refined;
+    read_claims();
+    say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +
+        std::to_string(d_.library.candidates.size()) + " candidate causes, " +
+        std::to_string(study_.parameters.size()) + " parameters, " + std::to_string(d_.measured.observables.rows()) +
+        " measured numbers");
+    StudySimulator simulator(study_, d_.measured.readings, d_.library, executor_, sink_, d_.ledger);
+    simulator_ = &simulator;
+    learn();
+    judge();
+    if (d_.diagnosis.verdict == infer::Verdict::named) check_ranges();
+    if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
+    if (d_.diagnosis.verdict == infer::Verdict::unknown)
+      d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
+    compare();
+    judge_claims();
+    if (d_.diagnosis.verdict != infer::Verdict::named && !possible.empty())
+      d_.next = weigh_measurements(study_, possible, d_, executor_, sink_);
+    return std::move(d_);
+  }
+
+ private:
+  void say(const std::string& text) const {
+    if (sink_.message) sink_.message(text);
+  }
+
+  /// The runs, and the linear model made of them.
+  void learn() {
+    d_.ledger.stage = "full cases and those of the data";
+    const std::uint64_t first = d_.options.seed * 1000 + 1;
+    simulator_->anchor({first, first + 1}, d_.measured.observables.sd());
+    std::vector<infer::Effect> effects;
+    for (const Candidate& c : d_.library.candidates) effects.push_back(c.effect);
+    d_.model = infer::linearise(d_.measured.observables, effects, *simulator_, d_.options);
+    drop_silent();
+    d_.bank = infer::make_bank(d_.model.observables);
+    infer::refine(d_.model, d_.bank, *simulator_, d_.options);
+    refine_leaders();
+    if (d_.measured.split_repeats)
+      d_.notes.push_back(
+          "the study holds no data out, so the later half of the repeats was; data at other conditions would prove "
+          "more");
+    if (!d_.measured.has_hold_out)
+      d_.notes.push_back("no data are held out and no repeats can be: no cause can be named");
+  }
+
+  /// The leading effect puts the parameters elsewhere than the model without it: base and leading effects are run there
+  /// again, with several seeds, for their signatures carry the verdict. Repeated until strength and parameters stay.
+  void refine_leaders() {
+    std::size_t last = d_.model.effects.size();
+    Vector last_amplitude;
+    for (int round = 0; round < plan_.rounds && !d_.model.effects.empty(); ++round) {
+      const infer::Budget budget = infer::error_budget(d_.model, d_.options);
+      const infer::Posterior posterior = single_causes(budget);
+      std::size_t leader = 0;
+      for (std::size_t e = 1; e < posterior.fits.size(); ++e)
+        if (posterior.fits[e].odds > posterior.fits[leader].odds) leader = e;
+      // Without a trace of an effect, all is where it belongs already.
+      if (posterior.fits[leader].odds < 1) return;
+      const Vector amplitude = posterior.fits[leader].amplitude;
+      const Vector u = nuisances_with(budget, d_.model.signatures[leader] * amplitude);
+      const bool settled = leader == last && (amplitude - last_amplitude).norm() < 0.1 * amplitude.norm() &&
+                           (u - d_.model.u).norm() < 0.3;
+      if (settled) return;
+      last = leader, last_amplitude = amplitude;
+      infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
+      infer::Options more = d_.options;
+      more.refined = leaders, more.refined_runs = plan_.leading;
+      infer::refine(d_.model, d_.bank, *simulator_, more);
+    }
+  }
+
+  infer::Posterior single_causes(const infer::Budget& budget) const {
+    infer::Options singles = d_.options;
+    singles.pairs = singles.unknown_rival = false;
+    const Matrix covariance =
+        budget.systematic + budget.both.noise + d_.model.sensitivities * d_.model.sensitivities.transpose();
+    return infer::weigh(d_.model, d_.bank,
+                        infer::Metric(covariance, budget.both.y - d_.model.base + d_.model.sensitivities * d_.model.u),
+                        singles);
+  }
+
+  /// Nuisance parameters of all data less a change.
+  Vector nuisances_with(infer::Budget budget, const Vector& change) const {
+    budget.fit = budget.both;
+    budget.fit.y -= change;
+    return infer::fit_nuisance(d_.model, budget, d_.options).u;
+  }
+
+  /// Effects whose runs failed or changed nothing leave the model, so that they take no share of the probability.
+  void drop_silent() {
+    std::vector<infer::Effect> effects;
+    std::vector<Matrix> signatures;
+    std::vector<double> variances;
+    for (std::size_t e = 0; e < d_.model.effects.size(); ++e) {
+      const auto failed = simulator_->failures().find(e);
+      std::string reason;
+      if (failed != simulator_->failures().end())
+        reason = "its run failed: " + failed->second;
+      else if (d_.model.signatures[e].isZero(0))
+        reason = "leaves no trace in what was measured";
+      if (!reason.empty()) {
+        d_.library.untested.push_back({d_.model.effects[e].id, reason});
+        continue;
+      }
+      d_.kept.push_back(e);
+      effects.push_back(d_.model.effects[e]);
+      signatures.push_back(d_.model.signatures[e]);
+      variances.push_back(d_.model.signature_variance[e]);
+    }
+    d_.model.effects = effects, d_.model.signatures = signatures, d_.model.signature_variance = variances;
+    simulator_->effects = d_.kept;
+  }
+
+  void judge() {
+    say("weighing " + std::to_string(d_.model.effects.size()) + " causes");
+    d_.diagnosis = infer::diagnose(d_.model, d_.bank, d_.options);
+    infer::Diagnosis& v = d_.diagnosis;
+    if (!d_.measured.has_hold_out && v.verdict == infer::Verdict::ambiguous)
+      v.reason = "no data are held out, and without them no cause is named";
+    std::vector<std::size_t> order(d_.model.effects.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return v.posterior.inclusion[a] > v.posterior.inclusion[b]; });
+    order.resize(std::min(order.size(), self_test_causes));
+    say("self-test on made-up data");
+    d_.self_test = infer::self_test(d_.model, d_.bank, order, self_test_strengths, self_test_studies, d_.options);
+    d_.options.calibration = d_.self_test.calibration;
+    for (std::size_t e = 0; e < v.probability.size(); ++e)
+      v.probability[e] = d_.options.calibration(v.posterior.inclusion[e]);
+
+    std::vector<Vector> amplitudes;
+    for (const infer::SingleFit& f : v.posterior.fits) amplitudes.push_back(f.amplitude);
+    const infer::View& view = v.budget.both;
+    const Matrix covariance =
+        v.budget.systematic + view.noise + d_.model.sensitivities * d_.model.sensitivities.transpose();
+    d_.confusion = infer::compare_causes(
+        d_.model, infer::Metric(covariance, view.y - d_.model.base + d_.model.sensitivities * d_.model.u), amplitudes);
+    find_amplitudes();
+  }
+
+  /// Strengths of what was named, and the nuisance parameters without and with it, from all data.
+  void find_amplitudes() {
+    const infer::Diagnosis& v = d_.diagnosis;
+    d_.explained = v.named;
+    for (std::size_t e = 0; e < v.posterior.inclusion.size() && v.named.empty(); ++e)
+      if (v.posterior.inclusion[e] > 0.5 && d_.explained.size() < 2) d_.explained.push_back(e);
+    d_.amplitudes.clear();
+    for (const std::size_t e : d_.explained) d_.amplitudes.push_back(v.posterior.fits[e].amplitude);
+    for (const infer::PairModel& pair : v.posterior.pairs)
+      if (d_.explained.size() == 2 && pair.first == d_.explained[0] && pair.second == d_.explained[1])
+        d_.amplitudes = {pair.fit.first, pair.fit.second};
+    infer::Budget all = v.budget;
+    all.fit = v.budget.both;
+    const infer::NuisanceFit old = infer::fit_nuisance(d_.model, all, d_.options);
+    d_.u_before = old.u;
+    d_.u_sd.clear();
+    for (Eigen::Index k = 0; k < old.u.size(); ++k) d_.u_sd.push_back(std::sqrt(old.covariance(k, k)));
+    d_.u_after = nuisances_with(v.budget, explained_change());
+  }
+
+  Vector explained_change() const {
+    Vector out = Vector::Zero(d_.model.base.size());
+    for (std::size_t k = 0; k < d_.explained.size(); ++k)
+      out += d_.model.signatures[d_.explained[k]] * d_.amplitudes[k];
+    return out;
+  }
+
+  void compare() {
+    const infer::LinearModel& m = d_.model;
+    d_.before = m.base + m.sensitivities * (d_.u_before - m.u);
+    d_.after = m.base + m.sensitivities * (d_.u_after - m.u) + explained_change();
+    if (!d_.explained.empty()) return;
+    for (const infer::UnknownTerm& t : d_.terms) {
+      const infer::Term& term = d_.bank.terms[t.term];
+      d_.after.segment(m.observables.first(term.block), term.columns.rows()) += term.columns * t.coefficients;
+    }
+  }
+
+  void check_ranges() {
+    for (std::size_t k = 0; k < d_.explained.size(); ++k) {
+      const Candidate& c = d_.library.candidates[d_.kept[d_.explained[k]]];
+      if (!c.allows(d_.amplitudes[k]))
+        return withdraw(c.info.id + " would have to be stronger than its range allows (" + c.parameter + " " +
+                        format_number(c.lowest) + " to " + brief_quantity(c.highest, c.unit) + ")");
+    }
+  }
+
+  /// The extended and the old case, really run with new seeds, against the held-out data.
+  void confirm() {
+    Confirmation& c = d_.confirmation;
+    infer::Diagnosis& v = d_.diagnosis;
+    d_.ledger.stage = "confirmation with new seeds";
+    c.seeds = plan_.confirmed;
+    std::vector<Setting> old, extended;
+    for (std::size_t k = 0; k < c.seeds; ++k) {
+      const std::uint64_t seed = d_.options.seed * 1000 + confirmation_seeds + k;
+      old.push_back({d_.u_before, {}, seed});
+      extended.push_back({d_.u_after, {}, seed});
+      for (std::size_t e = 0; e < v.named.size(); ++e)
+        extended.back().doses.emplace_back(d_.kept[v.named[e]], d_.amplitudes[e]);
+    }
+    c.done = true;
+    Matrix runs_old, runs_new;
+    try {
+      runs_old = simulator_->run_settings(old, true);
+      runs_new = simulator_->run_settings(extended, true);
+    } catch (const Error& e) {
+      if (e.fault() != Fault::numerics) throw;
+      withdraw("the extended case could not be run: " + std::string(e.what()));
+      return;
+    }
+    const Vector before = runs_old.rowwise().mean(), after = runs_new.rowwise().mean();
+    c.before.assign(before.data(), before.data() + before.size());
+    c.after.assign(after.data(), after.data() + after.size());
+    infer::Options without = d_.options;
+    without.seed_scatter = false;
+    const Matrix scatter = d_.model.scatter.covariance(d_.model.observables);
+    const Matrix error = infer::error_budget(d_.model, without).systematic + scatter / static_cast<double>(c.seeds) +
+                         v.budget.hold.noise;
+    const infer::Metric metric_old(error, v.budget.hold.y - before), metric_new(error, v.budget.hold.y - after);
+    c.log_score = 0.5 * (metric_old.residual().squaredNorm() - metric_new.residual().squaredNorm());
+    c.error_before = held_out_error(before), c.error_after = held_out_error(after);
+
+    const infer::LinearModel& m = d_.model;
+    const Vector foretold = m.base + m.sensitivities * (d_.u_after - m.u) + explained_change();
+    const infer::Freedom freedom = infer::freedom_of(m, parts(), d_.options);
+    const Matrix spread =
+        scatter * (1 / static_cast<double>(c.seeds) + m.base_weight + m.sensitivity_weight) + freedom.own;
+    const double square = infer::Metric(spread, after - foretold).residual().squaredNorm();
+    c.agreement = 0.5 * std::erfc(normal_score(square, after.size()) / std::sqrt(2.0));
+
+    // Half of what the algebra foretold is enough, since runs of a few seeds scatter.
+    const double needed = std::min(d_.options.gain_above, 0.5 * v.gain.log_score);
+    c.passed = c.log_score >= needed && c.error_after <= (1 - least_improvement) * c.error_before;
+    if (!c.passed) withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
+  }
+
+  void withdraw(const std::string& why) {
+    d_.diagnosis.verdict = infer::Verdict::ambiguous;
+    d_.diagnosis.reason = why;
+    d_.diagnosis.named.clear();
+  }
+
+  std::vector<infer::Part> parts() const {
+    std::vector<infer::Part> out;
+    for (std::size_t k = 0; k < d_.diagnosis.named.size(); ++k) {
+      const std::size_t e = d_.diagnosis.named[k];
+      out.push_back({e, d_.amplitudes[k], d_.diagnosis.posterior.fits[e].shape_factor});
+    }
+    return out;
+  }
+
+  double held_out_error(const Vector& figures) const {
+    double sum = 0, count = 0;
+    for (std::size_t b = 0; b < d_.model.observables.blocks.size(); ++b) {
+      const infer::Block& block = d_.model.observables.blocks[b];
+      if (block.hold.size() == 0) continue;
+      const int first = d_.model.observables.first(b);
+      for (Eigen::Index k = 0; k < block.hold.size(); ++k) {
+        sum += std::pow((block.hold[k] - figures[first + k]) / block.sd[k], 2);
+        count += 1;
+      }
+    }
+    return count > 0 ? std::sqrt(sum / count) : 0;
+  }
+
+  void read_claims() {
+    Document document(Parameters{study_.claims, "/claims", study_.folder}, study_.file);
+    std::vector<std::string> observables;
+    for (const StudyObservable& o : study_.observables) observables.push_back(o.name);
+    for (const Node& node : Node(document, document.root(), "/claims").items("claimed causes")) {
+      Object o(node, "a claimed cause");
+      Claim c;
+      c.effect = o.need("effect", "the id of an effect").text("the id of an effect");
+      c.observable = o.need("observable", "what it is said to explain").name_of("observable", observables);
+      c.says = o.text("says", "the claim in words");
+      o.done();
+      d_.claims.push_back(c);
+    }
+  }
+
+  void judge_claims() {
+    for (Claim& c : d_.claims) judge_claim(c);
+  }
+
+  void judge_claim(Claim& c) const {
+    const infer::Observables& all = d_.model.observables;
+    std::size_t b = 0;
+    while (all.blocks[b].name != c.observable && b + 1 < all.blocks.size()) ++b;
+    const infer::Block& block = all.blocks[b];
+    const int first = all.first(b), n = all.size(b);
+    const std::vector<double>& simulated = d_.measured.readings[b].simulated;
+    const Vector& y = block.fit.size() != 0 ? block.fit : block.hold;
+    const Vector from = simulated.empty() ? Vector(d_.before.segment(first, n)) : vector_of(simulated);
+    c.departure = (y - from).mean();
+    const Matrix scatter = d_.model.scatter.covariance(all).block(first, first, n, n);
+    c.departure_sd = std::sqrt(block.sd.squaredNorm() / n / n + scatter.mean());
+    c.verdict = "untested";
+    for (std::size_t e = 0; e < d_.kept.size(); ++e) {
+      const Candidate& candidate = d_.library.candidates[d_.kept[e]];
+      if (candidate.info.id != c.effect) continue;
+      c.change = candidate.effect.scale * d_.model.signatures[e].col(0).segment(first, n).mean();
+      const bool one_way = candidate.effect.one_sided;
+      c.verdict = c.change == 0 ? "unresolved" : one_way && c.change * c.departure < 0 ? "contradicted" : "possible";
+    }
+    c.sentence = sentence_of(c, d_.measured.readings[b].unit);
+  }
+
+  static std::string sentence_of(const Claim& c, const std::string& unit) {
+    const std::string error = "the simulation gives " + brief_quantity(std::fabs(c.departure), unit) +
+                              (c.departure > 0 ? " too little" : " too much") + " (" +
+                              format_number(std::round(10 * std::fabs(c.departure) / c.departure_sd) / 10) +
+                              " standard errors)";
+    const std::string of = c.effect + " for " + c.observable + ": " + error;
+    if (c.verdict == "untested") return of + "; the effect could not be tried in this case";
+    if (c.verdict == "unresolved") return of + "; the effect leaves no trace here that these runs resolve";
+    const std::string changes = c.change > 0 ? "more" : "less";
+    if (c.verdict == "contradicted")
+      return of + ", and the claimed cause can only give " + changes + ": contradicted by its sign";
+    return of + ", and the claimed cause gives " + changes +
+           " at a typical strength: its sign fits, which proves nothing yet";
+  }
+
+  const Study& study_;
+  Executor& executor_;
+  const ProgressSink& sink_;
+  StudySimulator* simulator_ = nullptr;
+  Plan plan_;
+  StudyDiagnosis d_;
+};
+
+}  // namespace
+
+StudyDiagnosis diagnose_study(const Study& study, Executor& executor, const ProgressSink& sink) {
+  return Diagnoser(study, executor, sink).go();
+}
+
+}  // namespace calx
