@@ -1,7 +1,10 @@
 #include "infer/self_test.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
+#include <thread>
 
 #include "infer/heavy_tails.hpp"
 
@@ -57,36 +60,54 @@ class Draws {
   Matrix systematic_, noise_[2];
 };
 
+/// Runs tasks 0 .. count - 1 on all cores. Each writes its own place, so that their order does not show.
+void in_parallel(std::size_t count, const std::function<void(std::size_t)>& task) {
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> threads;
+  for (unsigned k = 0; k < std::max(1u, std::thread::hardware_concurrency()); ++k)
+    threads.emplace_back([&] {
+      for (std::size_t i = next++; i < count; i = next++) task(i);
+    });
+  for (std::thread& t : threads) t.join();
+}
+
 }  // namespace
 
 SelfTest self_test(const LinearModel& model, const Bank& bank, const std::vector<std::size_t>& effects,
                    const std::vector<double>& amplitudes, int studies, const Options& options) {
   Options plain = options;
   plain.calibration = {};
+  // Enough for the thresholds of the decision, and the self-test is hundreds of diagnoses.
+  plain.nulls = std::min(options.nulls, 200);
   const Draws draw(model, options);
   SelfTest test;
+  test.controls = studies;
+  for (const std::size_t e : effects)
+    for (const double amplitude : amplitudes) test.powers.push_back({e, amplitude, studies, 0, 0});
+  const auto per_row = static_cast<std::size_t>(studies);
+  std::vector<Diagnosis> all(per_row * (1 + test.powers.size()));
+  in_parallel(all.size(), [&](std::size_t i) {
+    Random random(options.seed, 1000 + i);
+    const bool control = i < per_row;
+    const SelfTest::Power* p = control ? nullptr : &test.powers[i / per_row - 1];
+    Diagnosis d = diagnose(draw(random, p ? p->effect : 0, p ? p->amplitude : 0), bank, plain);
+    all[i].named = d.named;
+    all[i].posterior.inclusion = d.posterior.inclusion;
+  });
   std::vector<std::pair<double, bool>> statements;
-  std::uint64_t stream = 1000;
-  for (int k = 0; k < studies; ++k) {
-    Random random(options.seed, stream++);
-    const Diagnosis d = diagnose(draw(random, 0, 0), bank, plain);
-    test.controls += 1, test.controls_named += d.named.empty() ? 0 : 1;
-    for (double p : d.posterior.inclusion) statements.push_back({p, false});
-  }
-  for (std::size_t e : effects)
-    for (double amplitude : amplitudes) {
-      SelfTest::Power power{e, amplitude, 0, 0, 0};
-      for (int k = 0; k < studies; ++k) {
-        Random random(options.seed, stream++);
-        const Diagnosis d = diagnose(draw(random, e, amplitude), bank, plain);
-        power.studies += 1;
-        power.right += d.named == std::vector<std::size_t>{e} ? 1 : 0;
-        power.wrong += !d.named.empty() && d.named != std::vector<std::size_t>{e} ? 1 : 0;
-        for (std::size_t c = 0; c < d.posterior.inclusion.size(); ++c)
-          statements.push_back({d.posterior.inclusion[c], c == e});
-      }
-      test.powers.push_back(power);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Diagnosis& d = all[i];
+    SelfTest::Power* p = i < per_row ? nullptr : &test.powers[i / per_row - 1];
+    if (!p) {
+      test.controls_named += d.named.empty() ? 0 : 1;
+    } else {
+      const bool right = d.named == std::vector<std::size_t>{p->effect};
+      p->right += right ? 1 : 0;
+      p->wrong += !d.named.empty() && !right ? 1 : 0;
     }
+    for (std::size_t c = 0; c < d.posterior.inclusion.size(); ++c)
+      statements.push_back({d.posterior.inclusion[c], p && c == p->effect});
+  }
   test.calibration = learn_isotonic(statements, std::max(10, studies / 2));
   return test;
 }

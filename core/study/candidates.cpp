@@ -212,6 +212,9 @@ Library find_library(const Study& study, double step_scales) {
     for (const EffectParameter& p : info.parameters) {
       if (!p.is_amplitude) continue;
       Candidate c = make_candidate(info, p, roles, own, step_scales);
+      c.named = own != nullptr;
+      for (const StudyObservable& o : study.observables)
+        c.touched += static_cast<std::size_t>(std::count(info.touches.begin(), info.touches.end(), o.kind));
       const std::string reason = place(study, c, own, step_scales);
       if (reason.empty()) {
         out.candidates.push_back(c);

@@ -22,6 +22,8 @@ struct Candidate {
   double off = 0, lowest = 0, highest = 0, orientation = 1;  // value = off + orientation * amplitude
   std::string unit;
   std::vector<bool> cases;  // of study.cases
+  bool named = false;       // by the study
+  std::size_t touched = 0;  // observables of a kind that the effect is declared to touch
   infer::Effect effect;
 
   /// Value of the parameter, kept in its range, and of the direction in degrees (0 where there is none).

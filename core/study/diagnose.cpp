@@ -77,17 +77,30 @@ std::size_t runs_of(const Study& study, const Library& library, const Plan& plan
   return runs + 2 * used_cases(study, study.observables, true);
 }
 
-/// The richest plan that the budget pays for.
-Plan plan_of(const Study& study, const Library& library, std::size_t* planned) {
+/// The richest plan that the budget pays for. Where none does, candidates that the study did not name leave the
+/// library, those that are declared to touch the least of what was measured first.
+Plan plan_of(const Study& study, Library& library, std::size_t* planned) {
   for (const Plan& plan : plans) {
     *planned = runs_of(study, library, plan);
     if (*planned <= study.budget) return plan;
   }
-  throw Error(Fault::settings, study.file + " /budget/runs: " + std::to_string(study.budget) + " runs are too few; " +
-                                   std::to_string(library.candidates.size()) + " candidate causes and " +
-                                   std::to_string(study.parameters.size()) + " parameters need " +
-                                   std::to_string(*planned) + " at least. Give --budget " + std::to_string(*planned) +
-                                   ", or name fewer effects and say \"library\": \"named\"");
+  while (*planned > study.budget) {
+    std::size_t least = library.candidates.size();
+    for (std::size_t c = 0; c < library.candidates.size(); ++c) {
+      const Candidate& one = library.candidates[c];
+      if (one.named || one.info.is_instrument) continue;
+      if (least == library.candidates.size() || one.touched < library.candidates[least].touched) least = c;
+    }
+    if (least == library.candidates.size()) break;
+    library.untested.push_back({library.candidates[least].effect.id, "the budget of runs does not pay for it"});
+    library.candidates.erase(library.candidates.begin() + static_cast<std::ptrdiff_t>(least));
+    *planned = runs_of(study, library, plans.back());
+  }
+  if (*planned <= study.budget) return plans.back();
+  throw Error(Fault::settings, study.file + " /budget/runs: " + std::to_string(study.budget) +
+                                   " runs are too few; the cases with " + std::to_string(study.parameters.size()) +
+                                   " parameters need " + std::to_string(*planned) + " at least. Give --budget " +
+                                   std::to_string(*planned) + " or more");
 }
 
 class Diagnoser {
