@@ -69,11 +69,16 @@ Budget error_budget(const LinearModel& model, const Options& options) {
   const Observables& all = model.observables;
   Budget budget;
   budget.systematic = Matrix::Zero(all.rows(), all.rows());
-  if (options.seed_scatter)
-    budget.systematic = (model.base_weight + model.sensitivity_weight) * model.scatter.covariance(all);
+  const Matrix scatter = model.scatter.covariance(all);
   for (std::size_t b = 0; b < all.blocks.size(); ++b) {
     const int first = all.first(b), n = all.size(b);
     const Vector& sd = all.blocks[b].sd;
+    const double base_sd = all.blocks[b].base_sd;
+    if (options.seed_scatter)
+      budget.systematic.block(first, first, n, n) =
+          ((base_sd < 0 ? model.base_weight : 0) + model.sensitivity_weight) * scatter.block(first, first, n, n);
+    if (base_sd > 0)
+      budget.systematic.block(first, first, n, n) += base_sd * base_sd * Matrix(sd.cwiseAbs2().asDiagonal());
     Matrix bias = Matrix::Ones(1, 1);
     if (n > 1) bias = 0.5 * Matrix::Identity(n, n) + 0.5 * smooth_kernel(all.blocks[b], 0.25);
     const Matrix constant = 0.5 * (Matrix::Ones(n, n) + bias);

@@ -40,6 +40,12 @@ SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_
   double low = mean - (tolerant ? 16 : 8) * v - (tolerant ? 0.4 * std::abs(mean) : 0),
          high = mean + (tolerant ? 16 : 8) * v + (tolerant ? 0.8 * std::abs(mean) : 0);
   if (one_sided) low = std::max(low, 0.0), high = std::max(high, 3 * v);
+  // Where the data hardly speak, the prior ends the grid: beyond eight of its widest sd there is nothing to add up, and
+  // a grid much wider than the prior would see it at one point only.
+  if (v > scale) {
+    const double widest = 8 * prior_scales.back() * scale;
+    low = one_sided ? 0 : -widest, high = widest;
+  }
   const double step = (high - low) / (grid - 1);
   std::array<double, grid> log_posterior;
   double largest = -1e300;

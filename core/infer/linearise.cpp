@@ -10,8 +10,6 @@ namespace calx::infer {
 
 namespace {
 
-constexpr double step = 1;  // of a central difference, in prior sd
-
 std::vector<RunPoint> base_points(const Vector& u, int count, std::uint64_t& seed) {
   std::vector<RunPoint> points;
   for (int k = 0; k < count; ++k) points.push_back({u, -1, {}, seed++});
@@ -66,7 +64,8 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   std::vector<Vector> places;
   Matrix differences(rows, p);  // raw
   model.sensitivities = Matrix::Zero(rows, p);
-  double trace = p, moved = 0;
+  Vector moved = Vector::Ones(p), steps(p);  // moved: expected square of u' - u
+  for (int k = 0; k < p; ++k) steps[k] = simulator.step(k);
 
   for (std::size_t pass = 0; pass < options.base_runs.size(); ++pass) {
     model.base_seed = seed;
@@ -79,14 +78,14 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
       for (int k = 0; k < p; ++k)
         for (double sign : {1.0, -1.0}) {
           points.push_back({model.u, -1, {}, common_seed});
-          points.back().u[k] += sign * step;
+          points.back().u[k] += sign * steps[k];
         }
       const Matrix runs = simulator.run(points);
       const Denoiser denoise(observables, model.scatter);
       const double rho = options.common_numbers < 0 ? 0.5 : options.common_numbers;
       for (int k = 0; k < p; ++k) {
-        differences.col(k) = (runs.col(2 * k) - runs.col(2 * k + 1)) / (2 * step);
-        model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * step * step));
+        differences.col(k) = (runs.col(2 * k) - runs.col(2 * k + 1)) / (2 * steps[k]);
+        model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * steps[k] * steps[k]));
       }
     }
     // Earlier groups are carried here by the sensitivities, and weigh the less the farther away they are.
@@ -100,10 +99,10 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     }
     model.base = sum / weight;
     model.base_weight = square / (weight * weight);
-    model.sensitivity_weight = (1 - 0.5) / (2 * step * step) * (moved + trace);
+    model.sensitivity_weight = (1 - 0.5) / 2 * moved.cwiseQuotient(steps.cwiseAbs2()).sum();
     const Budget budget = error_budget(model, options);
     const NuisanceFit fit = fit_nuisance(model, budget, options);
-    moved = (fit.u - model.u).squaredNorm(), trace = fit.covariance.trace();
+    moved = (fit.u - model.u).cwiseAbs2() + fit.covariance.diagonal();
     if (pass + 1 < options.base_runs.size()) model.u = fit.u;
   }
 
@@ -139,8 +138,8 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     model.signature_variance.push_back(effects[e].instrument ? 0 : model.response_variance() / (step_size * step_size));
   }
   for (int k = 0; k < p; ++k)
-    model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * step * step));
-  model.sensitivity_weight = (1 - rho) / (2 * step * step) * (moved + trace);
+    model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * steps[k] * steps[k]));
+  model.sensitivity_weight = (1 - rho) / 2 * moved.cwiseQuotient(steps.cwiseAbs2()).sum();
   model.runs = planned_runs(effects, p, options) - options.refined;
   return model;
 }

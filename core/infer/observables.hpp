@@ -18,6 +18,7 @@ struct Block {
   double autocorrelation = 0;  // lag-one correlation of the measurement noise along the index, -1..1
   bool ordered = false;        // the index is time or cycle, along which something can change abruptly
   double tolerance = -1;       // sd of what the model may miss, in declared sd; below zero: that of the options
+  double base_sd = -1;         // of the base mean where it comes from no runs, in declared sd; below zero: from runs
   Vector fit, hold;            // measured numbers of the campaign that is fitted and of the one held out; empty: none
 };
 

@@ -30,6 +30,9 @@ class Simulator {
   virtual ~Simulator() = default;
   /// Number of nuisance parameters.
   virtual int parameters() const = 0;
+  /// Step of the central difference by a parameter, in its prior sd: larger where one sd changes less than runs
+  /// scatter.
+  virtual double step(int) const { return 1; }
   /// One column per point, one row per number of the observables. Pure: a point gives the same numbers every time. A
   /// column of NaN: the run with this effect cannot be made at this amplitude; others must be finite.
   virtual Matrix run(const std::vector<RunPoint>& points) = 0;

@@ -151,6 +151,7 @@ class Diagnoser {
     std::vector<infer::Effect> effects;
     for (const Candidate& c : d_.library.candidates) effects.push_back(c.effect);
     d_.model = infer::linearise(d_.measured.observables, effects, *simulator_, d_.options);
+    keep_foreign_base();
     drop_silent();
     d_.bank = infer::make_bank(d_.model.observables);
     infer::refine(d_.model, d_.bank, *simulator_, d_.options);
@@ -183,9 +184,21 @@ class Diagnoser {
       if (settled) return;
       last = leader, last_amplitude = amplitude;
       infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
+      keep_foreign_base();
       infer::Options more = d_.options;
       more.refined = leaders, more.refined_runs = plan_.leading;
       infer::refine(d_.model, d_.bank, *simulator_, more);
+    }
+  }
+
+  /// What another program gave is the base at the prior; the cases only say how it changes from there.
+  void keep_foreign_base() {
+    infer::LinearModel& m = d_.model;
+    for (std::size_t b = 0; b < m.observables.blocks.size(); ++b) {
+      const std::vector<double>& simulated = d_.measured.readings[b].simulated;
+      if (simulated.empty()) continue;
+      const int first = m.observables.first(b), n = m.observables.size(b);
+      m.base.segment(first, n) = vector_of(simulated) + m.sensitivities.middleRows(first, n) * m.u;
     }
   }
 
@@ -394,6 +407,8 @@ class Diagnoser {
       c.effect = o.need("effect", "the id of an effect").text("the id of an effect");
       c.observable = o.need("observable", "what it is said to explain").name_of("observable", observables);
       c.says = o.text("says", "the claim in words");
+      c.too_much =
+          o.choice("simulation", "what the claim says of the simulation", {"lacks it", "has too much of it"}, 0) == 1;
       o.done();
       d_.claims.push_back(c);
     }
@@ -413,15 +428,18 @@ class Diagnoser {
     const Vector& y = block.fit.size() != 0 ? block.fit : block.hold;
     const Vector from = simulated.empty() ? Vector(d_.before.segment(first, n)) : vector_of(simulated);
     c.departure = (y - from).mean();
-    const Matrix scatter = d_.model.scatter.covariance(all).block(first, first, n, n);
-    c.departure_sd = std::sqrt(block.sd.squaredNorm() / n / n + scatter.mean());
+    const infer::Budget& budget = d_.diagnosis.budget;
+    const Matrix& noise = (block.fit.size() != 0 ? budget.fit : budget.hold).noise;
+    c.departure_sd = std::sqrt((budget.systematic + noise).block(first, first, n, n).sum()) / n;
     c.verdict = "untested";
     for (std::size_t e = 0; e < d_.kept.size(); ++e) {
       const Candidate& candidate = d_.library.candidates[d_.kept[e]];
       if (candidate.info.id != c.effect) continue;
       c.change = candidate.effect.scale * d_.model.signatures[e].col(0).segment(first, n).mean();
-      const bool one_way = candidate.effect.one_sided;
-      c.verdict = c.change == 0 ? "unresolved" : one_way && c.change * c.departure < 0 ? "contradicted" : "possible";
+      // Less of an effect is always possible where there is too much of it, more of a one-sided one where it lacks.
+      const bool one_way = candidate.effect.one_sided || c.too_much;
+      const double would = c.too_much ? -c.change : c.change;
+      c.verdict = c.change == 0 ? "unresolved" : one_way && would * c.departure < 0 ? "contradicted" : "possible";
     }
     c.sentence = sentence_of(c, d_.measured.readings[b].unit);
   }
@@ -434,11 +452,11 @@ class Diagnoser {
     const std::string of = c.effect + " for " + c.observable + ": " + error;
     if (c.verdict == "untested") return of + "; the effect could not be tried in this case";
     if (c.verdict == "unresolved") return of + "; the effect leaves no trace here that these runs resolve";
-    const std::string changes = c.change > 0 ? "more" : "less";
-    if (c.verdict == "contradicted")
-      return of + ", and the claimed cause can only give " + changes + ": contradicted by its sign";
-    return of + ", and the claimed cause gives " + changes +
-           " at a typical strength: its sign fits, which proves nothing yet";
+    const double would = c.too_much ? -c.change : c.change;
+    const std::string remedy = c.too_much ? "less of the claimed cause would give " : "the claimed cause would give ";
+    const std::string direction = would > 0 ? "more" : "less";
+    if (c.verdict == "contradicted") return of + ", but " + remedy + direction + ": contradicted by its sign";
+    return of + ", and " + remedy + direction + ": its sign fits, which proves nothing yet";
   }
 
   const Study& study_;

@@ -34,6 +34,7 @@ struct NextMeasurement {
 /// A cause that somebody claims, held against the sign of what it does.
 struct Claim {
   std::string effect, observable, says, verdict;  // verdict: contradicted, possible, unresolved, untested
+  bool too_much = false;                          // the simulation is said to have too much of it; else it lacks it
   double departure = 0, departure_sd = 0;         // measured - simulated, unit of the observable
   double change = 0;                              // by the effect at a typical strength, same unit
   std::string sentence;

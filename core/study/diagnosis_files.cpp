@@ -100,7 +100,8 @@ class DiagnosisText {
       }
       case Verdict::none:
         return "Nothing is shown to be wrong: what was measured and the recalibrated simulation agree within their "
-               "uncertainties.";
+               "uncertainties." +
+               best_next();
       case Verdict::unknown: {
         std::string out = "Something is wrong that is not in the library";
         for (std::size_t k = 0; k < d_.terms.size(); ++k)
@@ -115,13 +116,15 @@ class DiagnosisText {
                                                            : k == effects_ ? "nothing"
                                                                            : "something outside the library");
         out += " Left are: " + left + ".";
-        if (!d_.next.empty()) out += " The measurement that would tell most: " + d_.next[0].name + ".";
-        return out;
+        return out + best_next();
       }
     }
   }
 
  private:
+  std::string best_next() const {
+    return d_.next.empty() ? "" : " The measurement that would tell most for its cost: " + d_.next[0].name + ".";
+  }
   const Candidate& candidate(std::size_t e) const { return d_.library.candidates[d_.kept[e]]; }
 
   std::string data_hash() const {
@@ -142,6 +145,7 @@ class DiagnosisText {
     const double shift = c.orientation * (amplitude.norm() - fit.amplitude.norm());
     double low = c.off + c.orientation * fit.low + shift, high = c.off + c.orientation * fit.high + shift;
     if (low > high) std::swap(low, high);
+    if (!c.direction.empty()) low = std::max(low, c.off);
     Json out = Json::array();
     out.push_back({{"name", c.parameter},
                    {"unit", c.unit},

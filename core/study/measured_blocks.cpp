@@ -33,6 +33,7 @@ Block block_of(const StudyObservable& o) {
   b.autocorrelation = o.measured.correlation;
   b.sd = sd_of_mean(o, o.measured.repeats);
   b.tolerance = o.tolerance / b.sd.mean();
+  if (!o.simulated.empty()) b.base_sd = o.simulated_sd / b.sd.mean();
   (o.use == Use::fit ? b.fit : b.hold) = vector_of(o.measured.y);
   return b;
 }

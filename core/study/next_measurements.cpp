@@ -134,11 +134,13 @@ class Foretelling {
     std::vector<infer::RunPoint> points;
     const int p = simulator.parameters();
     for (int k = 0; k < p; ++k)
-      for (const double sign : {1.0, -1.0}) points.push_back({sign * Vector::Unit(p, k), -1, {}, common});
+      for (const double sign : {1.0, -1.0})
+        points.push_back({sign * simulator.step(k) * Vector::Unit(p, k), -1, {}, common});
     if (p > 0) {
       const Matrix sides = simulator.run(points);
       for (int k = 0; k < p; ++k)
-        e.sensitivities.col(k) = denoise((sides.col(2 * k) - sides.col(2 * k + 1)) / 2, (1 - local.common_numbers) / 2);
+        e.sensitivities.col(k) = denoise((sides.col(2 * k) - sides.col(2 * k + 1)) / (2 * simulator.step(k)),
+                                         (1 - local.common_numbers) / (2 * std::pow(simulator.step(k), 2)));
     }
     points = {{d_.model.u, -1, {}, common}};
     std::vector<std::pair<std::size_t, int>> owner;

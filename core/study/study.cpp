@@ -186,10 +186,13 @@ class StudyReader {
   }
 
   static void read_simulated(const Node& node, StudyObservable& b) {
-    if (node.json().is_array())
-      for (const Node& n : node.items("numbers")) b.simulated.push_back(n.number(b.unit));
+    Object o(node, "what another program gave: {\"value\": 40.5, \"sd\": 0.5}");
+    if (const auto values = o.find("values"))
+      for (const Node& n : values->items("numbers")) b.simulated.push_back(n.number(b.unit));
     else
-      b.simulated = {node.number(b.unit)};
+      b.simulated = {o.need("value", "a number, or \"values\"").number(b.unit)};
+    if (const auto sd = o.find("sd")) b.simulated_sd = sd->number(b.unit, Allow::not_negative);
+    o.done();
     if (b.simulated.size() != b.measured.y.size())
       node.fail("holds " + std::to_string(b.simulated.size()) + " values for " + std::to_string(b.measured.y.size()) +
                 " measured");

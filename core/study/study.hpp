@@ -48,6 +48,7 @@ struct StudyObservable {
   enum class Use { fit, hold_out } use = Use::fit;
   MeasuredData measured;
   std::vector<double> simulated;  // by another program, at the prior of the parameters: the diagnosis is of that one
+  double simulated_sd = 0;        // of one of these, from seed to seed
   double tolerance = 0;  // sd of what the model may miss, in unit: declared, or 0.35 of the mean sd of one repeat
   std::vector<std::pair<std::string, double>> conditions;
 };

@@ -49,6 +49,15 @@ StudySimulator::StudySimulator(const Study& study, std::vector<StudyObservable> 
   for (std::size_t c = 0; c < library.candidates.size(); ++c) effects.push_back(c);
 }
 
+double StudySimulator::step(int parameter) const {
+  // A fifth of the range to either side, at most three prior sd, so that the difference stands out of the scatter of
+  // two runs, and not beyond the range.
+  const StudyParameter& p = study_.parameters[static_cast<std::size_t>(parameter)];
+  const double sd = prior_sd(p), mean = prior_mean(p);
+  const double room = std::max(0.1 * sd, std::min(mean - p.low, p.high - mean)) / sd;
+  return std::min(std::clamp(0.2 * (p.high - p.low) / sd, 1.0, 3.0), room);
+}
+
 std::vector<double> StudySimulator::values(const Vector& u) const {
   std::vector<double> out;
   for (std::size_t k = 0; k < study_.parameters.size(); ++k)

@@ -45,6 +45,7 @@ class StudySimulator : public infer::Simulator {
                  const ProgressSink& sink, RunLedger& ledger);
 
   int parameters() const override { return static_cast<int>(study_.parameters.size()); }
+  double step(int parameter) const override;
   /// Effects of points are numbers in `effects`. Throws Error(Fault::numerics) where a run without effect fails or
   /// gives no number; a run with an effect that fails, or that its case refuses, is NaN and noted in failures().
   infer::Matrix run(const std::vector<infer::RunPoint>& points) override;
