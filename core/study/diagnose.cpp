@@ -11,8 +11,8 @@
 #include "base/units.hpp"
 #include "config/document.hpp"
 #include "config/node.hpp"
+#include "study/confirm.hpp"
 #include "study/next_measurements.hpp"
-#include "study/surrogate.hpp"
 
 namespace calx {
 namespace {
@@ -21,28 +21,25 @@ using infer::Matrix;
 using infer::Vector;
 
 /// Runs of a plan: seeds of the base in each pass, effects run again at their fitted strength, rounds where base and
-/// leading effects are run again where the leading one puts the parameters, seeds of base and effects in each, seeds of
-/// each side of the confirmation.
+/// leading effects are run again where the leading one puts the parameters, seeds of base and effects in each, rounds
+/// and seeds of the fit by runs of old and extended case, seeds of each side of the confirmation.
 struct Plan {
   std::vector<int> base;
-  int refined, rounds, rebased, leading;
+  int refined, rounds, rebased, leading, steps, step_seeds;
   std::size_t confirmed;
 };
-const std::array<Plan, 6> plans = {{{{6, 6, 10}, 6, 4, 8, 6, 8},
-                                    {{4, 4, 6}, 4, 3, 6, 4, 6},
-                                    {{3, 3, 4}, 3, 3, 4, 3, 4},
-                                    {{3, 2, 3}, 2, 2, 4, 3, 3},
-                                    {{2, 2, 2}, 1, 1, 3, 2, 2},
-                                    {{2, 2}, 0, 0, 0, 0, 2}}};
+const std::array<Plan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
+                                    {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
+                                    {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
+                                    {{3, 2, 3}, 2, 2, 3, 2, 2, 2, 3},
+                                    {{2, 2, 2}, 1, 1, 3, 1, 1, 2, 2},
+                                    {{2, 2}, 0, 0, 0, 0, 0, 2, 2}}};
 constexpr int leaders = 2;
 
 /// Data sets of the self-test per cause and strength, and strengths in scales of the cause.
 constexpr int self_test_studies = 24;
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
-
-constexpr double least_improvement = 0.05;  // of the held-out error, for an extension to be worth having
-constexpr std::uint64_t confirmation_seeds = 700;
 
 std::size_t used_cases(const Study& study, const std::vector<StudyObservable>& readings, bool reduced_only) {
   return static_cast<std::size_t>(std::count_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& c) {
@@ -72,7 +69,7 @@ std::size_t runs_of(const Study& study, const Library& library, const Plan& plan
   }
   runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
   if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
-  runs += 2 * plan.confirmed * cases;
+  runs += 2 * (static_cast<std::size_t>((1 + plan.steps) * plan.step_seeds) + plan.confirmed) * cases;
   // Two runs of each full case carry what the reduced ones say.
   return runs + 2 * used_cases(study, study.observables, true);
 }
@@ -302,6 +299,9 @@ class Diagnoser {
     const infer::LinearModel& m = d_.model;
     d_.before = m.base + m.sensitivities * (d_.u_before - m.u);
     d_.after = m.base + m.sensitivities * (d_.u_after - m.u) + explained_change();
+    // Runs are better than what was foretold of them.
+    if (d_.confirmation.done)
+      d_.before = vector_of(d_.confirmation.before), d_.after = vector_of(d_.confirmation.after);
     if (!d_.explained.empty()) return;
     for (const infer::UnknownTerm& t : d_.terms) {
       const infer::Term& term = d_.bank.terms[t.term];
@@ -318,83 +318,33 @@ class Diagnoser {
     }
   }
 
-  /// The extended and the old case, really run with new seeds, against the held-out data.
+  /// The old and the extended case, fitted by runs and then run with new seeds against the held-out data.
   void confirm() {
-    Confirmation& c = d_.confirmation;
-    infer::Diagnosis& v = d_.diagnosis;
-    d_.ledger.stage = "confirmation with new seeds";
-    c.seeds = plan_.confirmed;
-    std::vector<Setting> old, extended;
-    for (std::size_t k = 0; k < c.seeds; ++k) {
-      const std::uint64_t seed = d_.options.seed * 1000 + confirmation_seeds + k;
-      old.push_back({d_.u_before, {}, seed});
-      extended.push_back({d_.u_after, {}, seed});
-      for (std::size_t e = 0; e < v.named.size(); ++e)
-        extended.back().doses.emplace_back(d_.kept[v.named[e]], d_.amplitudes[e]);
-    }
-    c.done = true;
-    Matrix runs_old, runs_new;
+    const RealModel old{d_.u_before, {}, {}}, named{d_.u_after, d_.explained, d_.amplitudes};
     try {
-      runs_old = simulator_->run_settings(old, true);
-      runs_new = simulator_->run_settings(extended, true);
+      d_.ledger.stage = "old case fitted by runs";
+      const RealModel old_fit = fit_by_runs(d_, *simulator_, old, plan_.steps, plan_.step_seeds).model;
+      d_.ledger.stage = "extended case fitted by runs";
+      const RealFit fit = fit_by_runs(d_, *simulator_, named, plan_.steps, plan_.step_seeds);
+      d_.ledger.stage = "confirmation with new seeds";
+      d_.confirmation = confirm_by_runs(d_, *simulator_, old_fit, fit.model, plan_.confirmed);
+      d_.u_before = old_fit.u, d_.u_after = fit.model.u;
+      d_.amplitudes = fit.model.amplitudes;
+      d_.amplitude_sd = fit.sd;
     } catch (const Error& e) {
-      if (e.fault() != Fault::numerics) throw;
-      withdraw("the extended case could not be run: " + std::string(e.what()));
-      return;
+      if (e.fault() != Fault::numerics && e.fault() != Fault::settings) throw;
+      return withdraw("the extended case could not be run: " + std::string(e.what()));
     }
-    const Vector before = runs_old.rowwise().mean(), after = runs_new.rowwise().mean();
-    c.before.assign(before.data(), before.data() + before.size());
-    c.after.assign(after.data(), after.data() + after.size());
-    infer::Options without = d_.options;
-    without.seed_scatter = false;
-    const Matrix scatter = d_.model.scatter.covariance(d_.model.observables);
-    const Matrix error = infer::error_budget(d_.model, without).systematic + scatter / static_cast<double>(c.seeds) +
-                         v.budget.hold.noise;
-    const infer::Metric metric_old(error, v.budget.hold.y - before), metric_new(error, v.budget.hold.y - after);
-    c.log_score = 0.5 * (metric_old.residual().squaredNorm() - metric_new.residual().squaredNorm());
-    c.error_before = held_out_error(before), c.error_after = held_out_error(after);
-
-    const infer::LinearModel& m = d_.model;
-    const Vector foretold = m.base + m.sensitivities * (d_.u_after - m.u) + explained_change();
-    const infer::Freedom freedom = infer::freedom_of(m, parts(), d_.options);
-    const Matrix spread =
-        scatter * (1 / static_cast<double>(c.seeds) + m.base_weight + m.sensitivity_weight) + freedom.own;
-    const double square = infer::Metric(spread, after - foretold).residual().squaredNorm();
-    c.agreement = 0.5 * std::erfc(normal_score(square, after.size()) / std::sqrt(2.0));
-
-    // Half of what the algebra foretold is enough, since runs of a few seeds scatter.
-    const double needed = std::min(d_.options.gain_above, 0.5 * v.gain.log_score);
-    c.passed = c.log_score >= needed && c.error_after <= (1 - least_improvement) * c.error_before;
-    if (!c.passed) withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
+    if (!d_.confirmation.passed)
+      withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
+    else
+      check_ranges();
   }
 
   void withdraw(const std::string& why) {
     d_.diagnosis.verdict = infer::Verdict::ambiguous;
     d_.diagnosis.reason = why;
     d_.diagnosis.named.clear();
-  }
-
-  std::vector<infer::Part> parts() const {
-    std::vector<infer::Part> out;
-    for (std::size_t k = 0; k < d_.diagnosis.named.size(); ++k) {
-      const std::size_t e = d_.diagnosis.named[k];
-      out.push_back({e, d_.amplitudes[k], d_.diagnosis.posterior.fits[e].shape_factor});
-    }
-    return out;
-  }
-
-  double held_out_error(const Vector& figures) const {
-    double sum = 0, count = 0;
-    for (std::size_t b = 0; b < d_.model.observables.blocks.size(); ++b) {
-      const infer::Block& block = d_.model.observables.blocks[b];
-      if (block.hold.size() == 0) continue;
-      const int first = d_.model.observables.first(b);
-      for (Eigen::Index k = 0; k < block.hold.size(); ++k) {
-        sum += std::pow((block.hold[k] - figures[first + k]) / block.sd[k], 2);
-        count += 1;
-      }
-    }
-    return count > 0 ? std::sqrt(sum / count) : 0;
   }
 
   void read_claims() {

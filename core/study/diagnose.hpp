@@ -52,6 +52,7 @@ struct StudyDiagnosis {
   std::vector<double> u_sd;
   std::vector<std::size_t> explained;     // the named effects; when none is named, one that is likelier than all else
   std::vector<infer::Vector> amplitudes;  // of these
+  std::vector<double> amplitude_sd;       // of these where runs of the extended case were fitted
   infer::Vector before, after;            // numbers of the recalibrated model, and with what was explained
   infer::Confusability confusion;
   infer::SelfTest self_test;

@@ -140,19 +140,27 @@ class DiagnosisText {
     const Candidate& c = candidate(e);
     const infer::SingleFit& fit = v_.posterior.fits[e];
     Vector amplitude = fit.amplitude;
-    for (std::size_t k = 0; k < d_.explained.size(); ++k)
-      if (d_.explained[k] == e) amplitude = d_.amplitudes[k];
-    const double shift = c.orientation * (amplitude.norm() - fit.amplitude.norm());
-    double low = c.off + c.orientation * fit.low + shift, high = c.off + c.orientation * fit.high + shift;
+    double low = fit.low, high = fit.high, sd = fit.sd;
+    for (std::size_t k = 0; k < d_.explained.size(); ++k) {
+      if (d_.explained[k] != e) continue;
+      amplitude = d_.amplitudes[k];
+      // Beside another effect, or fitted by runs: as wide as alone, or as the runs say where that is wider.
+      if (k < d_.amplitude_sd.size()) sd = std::max(sd, d_.amplitude_sd[k]);
+      constexpr double normal_95 = 1.645;
+      const double size = amplitude.size() == 1 ? amplitude[0] : amplitude.norm();
+      low = size - normal_95 * sd, high = size + normal_95 * sd;
+    }
+    const infer::Effect& effect = d_.model.effects[e];
+    if (effect.one_sided || effect.components == 2) low = std::max(low, 0.0);
+    low = c.off + c.orientation * low, high = c.off + c.orientation * high;
     if (low > high) std::swap(low, high);
-    if (!c.direction.empty()) low = std::max(low, c.off);
     Json out = Json::array();
     out.push_back({{"name", c.parameter},
                    {"unit", c.unit},
                    {"value", c.value(amplitude)},
                    {"low", low},
                    {"high", high},
-                   {"sd", fit.sd},
+                   {"sd", sd},
                    {"off", c.off},
                    {"range", {c.lowest, c.highest}}});
     if (!c.direction.empty()) {
