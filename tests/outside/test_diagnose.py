@@ -138,7 +138,7 @@ class Diagnose(CalxTest):
 
     def test_a_gain_of_the_balance_is_no_fault_of_the_hopper(self):
         self.measure(0, shown=1.12)
-        found, _ = self.diagnose()
+        found, _ = self.diagnose("--budget", 100)
         self.assertEqual(found["verdict"], "named", found["sentence"])
         self.assertEqual(found["causes"][0]["id"], "calx.load-cell-gain")
         self.assertTrue(found["causes"][0]["instrument"])
