@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "report/diagnosis_page.hpp"
 #include "report/report.hpp"
+#include "sample_diagnosis.hpp"
 #include "sample_run.hpp"
 #include "scratch_folder.hpp"
 
@@ -87,6 +89,19 @@ TEST_CASE("every chart and picture is drawn and the console stays empty") {
   // A blank picture of this size compresses to a few kB.
   const std::size_t picture = seen.dom.find("<img src=\"data:image/png;base64,");
   CHECK(seen.dom.find('"', picture + 12) - picture > 20000);
+}
+
+TEST_CASE("every chart of a diagnosis is drawn, with a band as wide as it says") {
+  if (browser().empty()) return;
+  const ScratchFolder folder;
+  calx_test::write_sample_diagnosis(folder.path(), calx_test::sample_diagnosis());
+  const Visit seen = visit(calx::write_diagnosis_report(folder.path()), folder.path());
+  for (const std::string& line : seen.complaints) FAIL_CHECK(line);
+  // Two residual plots, the single value, the held-out curve, the calibration curve.
+  CHECK(count(seen.dom, "class=\"plot\" data-chart=") == 5);
+  CHECK(count(seen.dom, "<div class=\"tip\"") == 5);
+  // Three bands of curves; the band of the single value is a rectangle.
+  CHECK(count(seen.dom, "opacity=\"0.16\"") == 3);
 }
 
 TEST_CASE("the playback's controls work") {
