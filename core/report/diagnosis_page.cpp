@@ -18,24 +18,35 @@ struct Banner {
 std::string what_is_named(const DiagnosisResult& d) {
   std::string out;
   for (const DiagnosisResult::Cause* c : d.named()) {
-    out += (out.empty() ? "" : " and ") + ("<code>" + html_text(c->id)) + "</code>";
+    out += (out.empty() ? "" : " and ") + names_html({c->label});
     if (!c->parameters.empty()) out += ", " + strength_html(c->parameters[0]);
   }
   return out;
+}
+
+/// Causes that are not named and still have a share worth a look.
+std::string perhaps_beside(const DiagnosisResult& d) {
+  std::string out;
+  for (const DiagnosisResult::Cause& c : d.causes)
+    if (!c.named && c.probability >= 0.1)
+      out += (out.empty() ? " Perhaps at work beside it: " : ", ") + names_html({c.label}) + " (" +
+             share_html(c.probability) + ")";
+  return out.empty() ? "" : out + ".";
 }
 
 Banner named_banner(const DiagnosisResult& d) {
   Banner b{"named", "cause named", "", "", ""};
   bool instrument = false;
   for (const DiagnosisResult::Cause* c : d.named()) {
-    std::string summary = c->summary.empty() ? c->id : c->summary;
+    std::string summary = c->summary.empty() ? c->label : c->summary;
     if (summary.back() == '.') summary.pop_back();
     b.headline += (b.headline.empty() ? "" : "; and: ") + html_text(summary);
     instrument = instrument || c->is_instrument;
   }
   b.meaning = "The simulation is wrong, and one explanation stands out: " + what_is_named(d) +
               ". No other cause of the library, no chance and no recalibration explains the measurements as well, and "
-              "data that were not fitted bear it out.";
+              "data that were not fitted bear it out." +
+              perhaps_beside(d);
   b.next =
       std::string(instrument ? "Check the instrument: the cause lies in how it was measured, not in the powder. "
                              : "Look for it at the plant, for the data show its traces and not the thing itself. ") +
@@ -44,12 +55,11 @@ Banner named_banner(const DiagnosisResult& d) {
 }
 
 Banner none_banner() {
-  return {
-      "none", "nothing shown wrong", "Nothing is shown to be wrong",
-      "The recalibrated simulation and the measurements agree within noise, seeds and tolerance. That is no proof that "
-      "all is right: a cause too weak for these data can hide, and section 5 says how strong it may be.",
-      "Leave the case as it is. If something still seems odd at the plant, measure with more repeats or at other "
-      "conditions."};
+  return {"none", "nothing shown wrong", "Nothing is shown to be wrong",
+          "The recalibrated simulation and the measurements agree within noise, seeds and tolerance. That is no proof "
+          "that all is right: a cause too weak for these data can hide, and section 5 says how strong it may be.",
+          "Leave the case as it is. If something still seems odd at the plant, measure with more repeats or at other "
+          "conditions."};
 }
 
 Banner ambiguous_banner(const DiagnosisResult& d) {
@@ -70,17 +80,19 @@ Banner ambiguous_banner(const DiagnosisResult& d) {
     b.meaning += ".";
   }
   b.next = "Do not change the case yet: a wrong cause built in makes every later prediction worse. " +
-           (d.next.empty() ? std::string("Measure something else: section 2 says what would tell the causes apart.")
-                           : "Measure: <b>" + html_text(d.next[0].name) + "</b> would give a clear verdict with " +
-                                 share_html(d.next[0].clear_verdict) + " probability (section 6).");
+           (d.next.empty()
+                ? std::string("Measure something else: section 2 says what would tell the causes apart.")
+                : "Measure: <b>" + html_text(d.next[0].name) +
+                      "</b> tells most of what could be measured; a clear verdict after it has a probability of " +
+                      share_html(d.next[0].clear_verdict) + " (section 6).");
   return b;
 }
 
 Banner unknown_banner(const DiagnosisResult& d) {
   Banner b{"unknown", "not in the library", "Something is wrong that no known cause explains", "", ""};
   b.meaning =
-      "The measurements depart from the simulation in a way that neither chance nor recalibration nor any cause of "
-      "the library makes.";
+      "The measurements depart from the simulation in a way that neither chance nor recalibration nor any cause of the "
+      "library makes.";
   if (!d.terms.empty()) b.meaning += " It looks like this: <b>" + html_text(d.terms[0].words) + "</b>.";
   b.next =
       "Ask at the plant what could leave such a trace, and whether an instrument could. Whoever has an idea can add it "
@@ -107,6 +119,8 @@ std::string cost_card(const DiagnosisResult& d) {
 
 }  // namespace
 
+std::string DiagnosisSections::added() const { return d.has_cause() ? "with the cause" : "with the unknown term"; }
+
 void DiagnosisSections::header() {
   const Banner b = banner_of(d);
   std::string out = "<div class=\"title\"><h1>" + html_text(d.title.empty() ? "diagnosis" : d.title) +
@@ -117,16 +131,19 @@ void DiagnosisSections::header() {
   std::size_t wrong = 0;
   for (const DiagnosisResult::Observable& o : d.observables) wrong += o.p < 0.05 ? 1 : 0;
   out += html_card("observables that are off", format_number(wrong) + " of " + format_number(d.observables.size()),
-                   "beyond what chance gives in 1 of 20 cases", wrong > 0 ? "bad" : "good");
+                   "beyond what chance gives in 1 of 20 cases",
+                   wrong == 0            ? "good"
+                   : d.verdict == "none" ? ""
+                                         : "bad");
   if (!d.named().empty())
     out += html_card("probability of the cause", share_html(d.named()[0]->probability),
                      "as often true as it says, by the self-test", "main");
   if (d.has_after() && std::isfinite(d.gain))
-    out += html_card("gain on data not fitted", likelier_html(d.gain),
-                     "needed: " + format_number(std::exp(d.gain_needed), 2) + " times",
+    out += html_card("data not fitted are", likelier_html(d.gain),
+                     "than with the old model; needed: " + format_number(std::exp(d.gain_needed), 2) + " times",
                      d.gain >= d.gain_needed ? "good" : "bad");
   if (d.confirmation.done)
-    out += html_card("runs with new seeds", d.confirmation.passed ? "confirm it" : "do not confirm it",
+    out += html_card("runs with new seeds", d.confirmation.passed ? "confirm it" : "do not confirm",
                      format_number(d.confirmation.seeds) + " of each case", d.confirmation.passed ? "good" : "bad");
   page.header(out + cost_card(d) + "</div>");
 }

@@ -1,4 +1,6 @@
 // What a diagnosis does not say: effects that were not tried, assumptions, notes; and where it comes from.
+#include <algorithm>
+
 #include "report/diagnosis_page_sections.hpp"
 #include "report/diagnosis_page_words.hpp"
 #include "report/units.hpp"
@@ -14,9 +16,12 @@ std::string list_html(const std::vector<std::string>& entries) {
 
 std::string runs_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::vector<std::string>> out;
+  // Names of folders are hashes; runs.csv has them.
+  const auto folder = std::find(rows[0].begin(), rows[0].end(), "folder") - rows[0].begin();
   for (const std::vector<std::string>& row : rows) {
     out.emplace_back();
-    for (const std::string& cell : row) out.back().push_back(html_text(cell));
+    for (std::size_t k = 0; k < row.size(); ++k)
+      if (static_cast<std::ptrdiff_t>(k) != folder) out.back().push_back(html_text(row[k]));
   }
   return html_table(out, out[0].size());
 }
@@ -45,7 +50,7 @@ void DiagnosisSections::provenance() {
   if (d.has_cost)
     out += "<p>" + format_number(d.runs) + " runs, " + format_number(d.cached) + " of them taken from earlier, " +
            format_number(d.failed) + " failed; " + format_quantity(d.run_seconds, "s", 3) +
-           " of run time in all, executor " + html_text(d.executor) + ".</p>";
+           " of run time in all, executor " + html_text(d.executor) + ". runs.csv says where each one lies.</p>";
   else
     out += html_absent("No cost: cost.json is not there.");
   if (d.run_rows.size() > 1)

@@ -76,7 +76,7 @@ Result::Amount read_amount(const Json& j) {
 
 Result::Cause read_cause(const Json& j) {
   Result::Cause c;
-  c.id = text(j, "id"), c.summary = text(j, "summary");
+  c.id = text(j, "id"), c.label = text(j, "amplitude"), c.summary = text(j, "summary");
   c.probability = number(j, "probability", 0);
   c.evidence = number(j, "evidence", c.probability);
   c.signal_to_noise = number(j, "signal_to_noise");
@@ -84,6 +84,15 @@ Result::Cause read_cause(const Json& j) {
   c.parameters = each(j, "parameters", read_amount);
   c.rivals = each(j, "rivals", [](const Json& r) { return Result::Rival{text(r, "effect"), text(r, "separate")}; });
   return c;
+}
+
+/// An effect of several parameters may be a cause by each; labels are then as elsewhere in diagnosis.json.
+void label(std::vector<Result::Cause>& causes) {
+  for (Result::Cause& c : causes) {
+    const bool shared =
+        std::count_if(causes.begin(), causes.end(), [&](const Result::Cause& other) { return other.id == c.id; }) > 1;
+    c.label = c.id + (shared ? " " + c.label : "");
+  }
 }
 
 Result::Observable read_observable(const Json& j) {
@@ -184,11 +193,6 @@ void read_cost(Result& d) {
 
 }  // namespace
 
-const Result::Cause* Result::cause(const std::string& id) const {
-  const auto at = std::find_if(causes.begin(), causes.end(), [&](const Cause& c) { return c.id == id; });
-  return at == causes.end() ? nullptr : &*at;
-}
-
 std::vector<const Result::Cause*> Result::named() const {
   std::vector<const Cause*> out;
   for (const Cause& c : causes)
@@ -208,6 +212,7 @@ DiagnosisResult read_diagnosis(const std::string& dir) {
   d.calx = text(j, "calx"), d.seed = text(j, "seed");
   d.verdict = text(j, "verdict"), d.reason = text(j, "reason"), d.sentence = text(j, "sentence");
   d.causes = each(j, "causes", read_cause);
+  label(d.causes);
   std::stable_sort(d.causes.begin(), d.causes.end(),
                    [](const Result::Cause& a, const Result::Cause& b) { return a.evidence > b.evidence; });
   const Json& evidence = member(j, "evidence");

@@ -20,7 +20,7 @@ struct DiagnosisResult {
     std::string effect, separate;
   };
   struct Cause {
-    std::string id, summary;
+    std::string id, label, summary;        // label: the id, with the parameter if several causes share the id
     double probability = 0, evidence = 0;  // as stated, after the self-test's calibration; before it
     double signal_to_noise = unknown;
     bool named = false, is_instrument = false;
@@ -101,10 +101,11 @@ struct DiagnosisResult {
   std::string executor;
   std::vector<std::vector<std::string>> run_rows;  // of runs.csv, the head first
 
-  const Cause* cause(const std::string& id) const;
   std::vector<const Cause*> named() const;
-  /// Something was added to the recalibrated model, so that before and after differ.
-  bool has_after() const { return !after_holds.empty() || !terms.empty() || !named().empty(); }
+  /// after holds a cause: one that is named, or one that is likelier than all else and not proven.
+  bool has_cause() const { return !after_holds.empty() || !named().empty(); }
+  /// Something was added to the recalibrated simulation, so that before and after differ.
+  bool has_after() const { return has_cause() || !terms.empty(); }
 };
 
 /// Throws Error(Fault::files) when dir/diagnosis.json cannot be read, is no JSON or is no diagnosis.

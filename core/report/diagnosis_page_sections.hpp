@@ -22,6 +22,8 @@ struct DiagnosisSections {
   void provenance();  // runs, versions
 
  private:
+  /// What was added to the recalibrated simulation: "with the cause", "with the unknown term".
+  std::string added() const;
   std::string residual_chart(const DiagnosisResult::Observable& o);
   std::string single_values_chart();
   std::string evidence_bars() const;

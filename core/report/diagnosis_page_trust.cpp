@@ -1,5 +1,6 @@
 // Whether the diagnosis can be trusted: the same analysis on made-up data with known causes; what to measure next.
 #include <cmath>
+#include <limits>
 
 #include "report/diagnosis_page_sections.hpp"
 #include "report/diagnosis_page_words.hpp"
@@ -10,16 +11,46 @@ namespace {
 
 using Power = DiagnosisResult::Power;
 
+constexpr double wrong_share = 0.05;  // of the trials; more of them named wrong is bad
+
 std::string count_html(double part, double all) {
   if (!(all > 0)) return "-";
-  return format_number(100 * part / all, 2) + "\xc2\xa0% <small>(" + format_number(part) + " of " + format_number(all) +
-         ")</small>";
+  return format_number(std::round(100 * part / all)) + "\xc2\xa0% <small>(" + format_number(part) + " of " +
+         format_number(all) + ")</small>";
+}
+
+/// The trials of a cause whose strength is nearest to the one found, by their ratio.
+const Power* nearest(const std::vector<Power>& powers, const DiagnosisResult::Cause& cause) {
+  const Power* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Power& p : powers) {
+    if (p.cause != cause.label || cause.parameters.empty()) continue;
+    const DiagnosisResult::Amount& found = cause.parameters[0];
+    const double off = std::isfinite(found.off) ? found.off : 0;
+    const double distance = std::fabs(std::log((p.strength - off) / (found.value - off)));
+    if (distance < least) least = distance, best = &p;
+  }
+  return best;
 }
 
 std::string power_sentence(const Power& p) {
-  return "A cause " + names_html({p.cause}) + " of strength " + amount_html(p.strength, p.unit) +
-         " would be named right " + count_html(p.right, p.studies) + ", named as another cause " +
-         count_html(p.wrong, p.studies) + ", and otherwise left open.";
+  return "With these data, a cause " + names_html({p.cause}) + " of strength " + quantity_html(p.strength, p.unit) +
+         " would be named right " + count_html(p.right, p.studies) + ", wrong " + count_html(p.wrong, p.studies) +
+         ", and left open otherwise.";
+}
+
+std::string powers_table(const std::vector<Power>& powers) {
+  std::vector<std::vector<std::string>> rows = {
+      {"If the cause were", "of strength", "named right", "named wrong", "left open"}};
+  const Power* last = nullptr;
+  for (const Power& p : powers) {
+    const bool again = last && last->cause == p.cause;
+    rows.push_back({again ? "" : names_html({p.cause}), quantity_html(p.strength, p.unit),
+                    count_html(p.right, p.studies), count_html(p.wrong, p.studies),
+                    count_html(p.studies - p.right - p.wrong, p.studies)});
+    last = &p;
+  }
+  return html_table(rows, 1);
 }
 
 }  // namespace
@@ -32,21 +63,22 @@ void DiagnosisSections::trust() {
   }
   out +=
       "<p>The whole analysis was done again on made-up measurements, drawn from the fitted simulation with the noise "
-      "and "
-      "the number of values of this study, so that the right answer was known.</p><ul class=\"checks\">";
+      "and the number of values of this study, so that the right answer was known.</p><ul class=\"checks\">";
   if (d.controls > 0)
-    out +=
-        html_check(d.controls_named > 0 ? "bad" : "good", "With nothing wrong, a cause was named",
-                   count_html(d.controls_named, d.controls) +
-                       (d.controls_named > 0 ? "."
-                                             : "; " + format_number(d.controls) + " trials cannot exclude a rate of " +
-                                                   format_number(300 / d.controls, 2) + "\xc2\xa0% or less."));
-  for (const Power& p : d.powers)
-    out += html_check(p.studies > 0 && p.wrong / p.studies > 0.05 ? "bad"
-                      : p.right >= 0.5 * p.studies                ? "good"
-                                                                  : "open",
-                      "", power_sentence(p));
+    out += html_check(
+        d.controls_named > 0 ? "bad" : "good", "With nothing wrong, a cause was named",
+        count_html(d.controls_named, d.controls) +
+            (d.controls_named > 0 ? "."
+                                  : "; " + format_number(d.controls) + " trials alone leave room for up to " +
+                                        format_number(300 / d.controls, 2) + "\xc2\xa0%."));
+  for (const DiagnosisResult::Cause* c : d.named())
+    if (const Power* p = nearest(d.powers, *c))
+      out += html_check(p->wrong > wrong_share * p->studies ? "bad"
+                        : p->right >= 0.5 * p->studies      ? "good"
+                                                            : "open",
+                        "The cause named here:", power_sentence(*p));
   out += "</ul>";
+  if (!d.powers.empty()) out += "<h3>What would be found</h3>" + powers_table(d.powers);
   if (d.stated.size() == d.observed.size() && d.stated.size() > 1) {
     Chart chart;
     chart.title = "Stated and true probabilities";
@@ -56,8 +88,8 @@ void DiagnosisSections::trust() {
                     {ChartSeries::Style::points, "self-test", d.stated, d.observed, {}, 0},
                     {ChartSeries::Style::line, "used for this page", d.stated, d.observed, {}, 0}};
     chart.caption =
-        "Below the dashed line the bare method is too sure of itself. The probabilities on this page are read "
-        "from this curve, so that they are as often true as they say.";
+        "Below the dashed line the bare method is too sure of itself. The probabilities on this page are read from "
+        "this curve, so that they are as often true as they say.";
     out += "<div class=\"charts\">" + page.chart(chart) + "</div>";
   }
   page.section("trust", "5. Can it be trusted", "Trust", out);
@@ -79,7 +111,9 @@ void DiagnosisSections::next() {
   page.section(
       "next", "6. Measure next", "Next",
       "<p>Of the measurements that the study says could be made, <b>" + html_text(d.next[0].name) +
-          "</b> tells most about what is left open.</p>" + html_table(rows, 1) +
+          "</b> tells most about what is left open." +
+          std::string(d.next[0].clear_verdict < 0.5 ? " It is not likely to settle it alone." : "") + "</p>" +
+          html_table(rows, 1) +
           "<p class=\"note\">Clear verdict: how likely the measurement leaves one explanation. Information: ln 2, "
           "0.69, is the answer to one question of yes or no. Cost: as the study gives it.</p>");
 }

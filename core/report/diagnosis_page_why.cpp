@@ -18,8 +18,24 @@ std::string bar(double share, const std::string& mood) {
          "%\"></i></span>";
 }
 
+std::string shade(const std::string& which, const std::string& content) {
+  return "<span class=\"shade " + which + "\">" + content + "</span>";
+}
+
 std::string summary_html(const DiagnosisResult::Cause& c) {
   return c.summary.empty() ? "" : "<br><small>" + html_text(c.summary) + "</small>";
+}
+
+/// Words of a term bear no units.
+std::string units_html(const DiagnosisResult& d, const DiagnosisResult::UnknownTerm& t) {
+  for (const DiagnosisResult::Observable& o : d.observables) {
+    if (o.name != t.observable) continue;
+    const Quantity x = quantity_of(o.against);
+    return (o.unit.empty() || o.unit == "1" ? "a plain number" : "in " + html_text(o.unit)) +
+           (x.title.empty() ? "" : ", against " + html_text(x.title)) +
+           (x.unit.empty() ? "" : " in " + html_text(x.unit));
+  }
+  return "";
 }
 
 bool leads(const DiagnosisResult::Cause& c) { return c.named || c.evidence >= least_share; }
@@ -27,26 +43,25 @@ bool leads(const DiagnosisResult::Cause& c) { return c.named || c.evidence >= le
 }  // namespace
 
 std::string DiagnosisSections::evidence_bars() const {
-  std::vector<std::vector<std::string>> rows = {{"Explanation", "", "Share"}};
+  std::vector<std::vector<std::string>> rows = {{"Explanation", "Share", ""}};
   const auto add = [&](const std::string& name, double share, const std::string& mood) {
-    if (std::isfinite(share)) rows.push_back({name, bar(share, mood), share_html(share)});
+    if (std::isfinite(share)) rows.push_back({name, share_html(share), bar(share, mood)});
   };
   add("<b>nothing is wrong</b><br><small>recalibrated simulation and chance</small>", d.none, "none");
   std::vector<std::string> little;
   for (const DiagnosisResult::Cause& c : d.causes) {
     if (leads(c))
-      add("<code>" + html_text(c.id) + "</code>" + (c.named ? " <span class=\"tag\">named</span>" : "") +
+      add("<code>" + html_text(c.label) + "</code>" + (c.named ? " <span class=\"tag\">named</span>" : "") +
               summary_html(c),
           c.evidence, c.named ? "taken" : "");
     else
-      little.push_back(c.id);
+      little.push_back(c.label);
   }
   add("<b>something that is not in the library</b><br><small>a departure with a shape that no cause leaves</small>",
       d.unlisted, "binds");
-  std::string out =
-      html_table(rows, 2, "evidence") +
-      "<p class=\"note\">How much each explanation is worth after the data, before the self-test corrects "
-      "it. Two causes may act together, so that shares can add up to more than 100\xc2\xa0%.</p>";
+  std::string out = html_table(rows, 1, "evidence") +
+                    "<p class=\"note\">How likely each is at work, alone or beside another cause, before the self-test "
+                    "corrects it; so the shares can add up to more than 100\xc2\xa0%.</p>";
   if (!little.empty()) out += "<p><b>Hardly supported</b>, each below 1\xc2\xa0%: " + names_html(little) + ".</p>";
   return out;
 }
@@ -59,18 +74,19 @@ std::string DiagnosisSections::cause_table() const {
     std::string strength, range;
     for (const DiagnosisResult::Amount& a : c.parameters) {
       strength += (strength.empty() ? "" : "<br>") + strength_html(a);
-      if (std::isfinite(a.lowest) && std::isfinite(a.highest))
-        range += amount_html(a.lowest, "") + " to " + amount_html(a.highest, a.unit);
-      if (std::isfinite(a.off)) range += "<br><small>" + amount_html(a.off, a.unit) + " when there is none</small>";
+      if (std::isfinite(a.lowest) && std::isfinite(a.highest)) range += range_html(a.lowest, a.highest, a.unit);
+      if (std::isfinite(a.off))
+        range += "<br><small>" + (a.off == 0 ? "0" : quantity_html(a.off, a.unit)) + " when there is none</small>";
     }
-    rows.push_back({"<code>" + html_text(c.id) + "</code>" + (c.is_instrument ? "<br><small>instrument</small>" : ""),
-                    strength, range, format_number(c.signal_to_noise, 2), share_html(c.probability)});
+    rows.push_back(
+        {"<code>" + html_text(c.label) + "</code>" + (c.is_instrument ? "<br><small>instrument</small>" : ""), strength,
+         range, distance_html(c.signal_to_noise), share_html(c.probability)});
   }
   if (rows.size() == 1) return "";
   return "<h3>The causes that have a share</h3>" + html_table(rows, 3) +
          "<p class=\"note\">Signal to noise: how far the trace of the cause stands out of the scatter, at this "
-         "strength and "
-         "with all parameters set anew; below 3 it is faint. Probability: after the calibration of the self-test.</p>";
+         "strength and with all parameters set anew; below 3 it is faint. Probability: after the calibration of the "
+         "self-test.</p>";
 }
 
 std::string DiagnosisSections::alike() const {
@@ -85,13 +101,13 @@ std::string DiagnosisSections::alike() const {
 std::string DiagnosisSections::distance_map() const {
   std::set<std::string> wanted;
   for (const DiagnosisResult::Cause& c : d.causes)
-    if (leads(c) || wanted.size() < 6) wanted.insert(c.id);
+    if (leads(c) || wanted.size() < 6) wanted.insert(c.label);
   for (const std::vector<std::string>& group : d.groups) wanted.insert(group.begin(), group.end());
   // Likeliest first, as in the bars above.
   std::vector<std::size_t> shown;
   for (const DiagnosisResult::Cause& c : d.causes) {
-    const auto at = std::find(d.ids.begin(), d.ids.end(), c.id);
-    if (wanted.count(c.id) > 0 && at != d.ids.end()) shown.push_back(static_cast<std::size_t>(at - d.ids.begin()));
+    const auto at = std::find(d.ids.begin(), d.ids.end(), c.label);
+    if (wanted.count(c.label) > 0 && at != d.ids.end()) shown.push_back(static_cast<std::size_t>(at - d.ids.begin()));
   }
   if (shown.size() < 2) return "";
   std::vector<std::vector<std::string>> rows = {{"", "True cause"}};
@@ -100,27 +116,27 @@ std::string DiagnosisSections::distance_map() const {
     rows.push_back({std::to_string(k + 1), "<code>" + html_text(d.ids[shown[k]]) + "</code>"});
     for (std::size_t l = 0; l < shown.size(); ++l) {
       const double distance = d.distance[shown[k]][shown[l]];
-      const char* shade = !(distance >= apart) ? "near" : distance < 2 * apart ? "middle" : "far";
-      rows.back().push_back(
-          k == l ? "" : "<span class=\"shade " + std::string(shade) + "\">" + format_number(distance, 2) + "</span>");
+      const std::string which = !(distance >= apart) ? "near" : distance < 2 * apart ? "middle" : "far";
+      rows.back().push_back(k == l ? "" : shade(which, distance_html(distance)));
     }
   }
   return "<h3>How well the causes can be told apart</h3>" + html_table(rows, 2, "map") +
          "<p class=\"note\">What is left of a true cause (row, at the strength that fits best) when another one "
          "(column, by "
-         "its number) imitates it as well as it can, in standard deviations. <span class=\"shade near\">below 3</span> "
-         "cannot be told apart, <span class=\"shade middle\">3 to 6</span> mostly, <span class=\"shade far\">above "
-         "6</span> "
-         "surely. A row of small numbers throughout is a cause whose best strength is next to nothing.</p>";
+         "its number) imitates it as well as it can, in standard deviations. " +
+         shade("near", "below 3") + " cannot be told apart, " + shade("middle", "3 to 6") + " mostly, " +
+         shade("far", "above 6") +
+         " surely. A row of small numbers throughout is a cause whose best strength is next to nothing.</p>";
 }
 
 std::string DiagnosisSections::rivals() const {
   std::string out;
   for (const DiagnosisResult::Cause& c : d.causes) {
-    const bool left = std::find(d.set.begin(), d.set.end(), c.id) != d.set.end();
+    const bool left = std::find(d.set.begin(), d.set.end(), c.label) != d.set.end();
     if (!c.named && !(left && d.verdict != "none")) continue;
     for (const DiagnosisResult::Rival& r : c.rivals)
-      out += "<li><code>" + html_text(c.id) + "</code> or <code>" + html_text(r.effect) + "</code>? " +
+      out += "<li>" + names_html({c.label}) + " or " +
+             (r.effect.find(' ') == std::string::npos ? names_html({r.effect}) : html_text(r.effect)) + "? " +
              html_text(r.separate) + "</li>";
   }
   return out.empty() ? "" : "<h3>What would tell them from their rivals</h3><ul>" + out + "</ul>";
@@ -129,16 +145,14 @@ std::string DiagnosisSections::rivals() const {
 std::string DiagnosisSections::terms() const {
   if (d.terms.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
-      {"What the departure looks like", "What such a shape can mean", "Data so much likelier with it", "Chosen again"}};
+      {"What the departure looks like", "What such a shape can mean", "Data with it are", "Chosen again"}};
   for (const DiagnosisResult::UnknownTerm& t : d.terms)
-    rows.push_back({html_text(t.words), family_html(t.family), likelier_html(t.gain),
-                    t.stability > 0 ? share_html(t.stability) : "-"});
+    rows.push_back({html_text(t.words) + "<br><small>" + units_html(d, t) + "</small>", shape_meaning_html(t.family),
+                    likelier_html(t.gain), t.stability > 0 ? share_html(t.stability) : "-"});
   return "<h3>The unknown in words</h3>" + html_table(rows, 2) +
-         "<p class=\"note\">Sizes are measurement less simulation, in the unit of the observable and against its own "
-         "axis. "
-         "Chosen again: how often the same shape comes first when a fifth of the numbers is left out. These terms "
-         "describe "
-         "what was measured between its first and its last value; they are no cause and foretell nothing outside.</p>";
+         "<p class=\"note\">Sizes are measurement less simulation. Chosen again: how often the same shape comes first "
+         "when a fifth of the numbers is left out. These terms describe what was measured between its first and its "
+         "last value; they are no cause and foretell nothing outside.</p>";
 }
 
 std::string DiagnosisSections::claims() const {
@@ -156,6 +170,7 @@ void DiagnosisSections::why() {
       "<p>Each cause of the library was built into the simulation, and its trace laid beside the differences above. "
       "\"Nothing is wrong\" and \"not in the library\" compete with them.</p>" +
       evidence_bars() + cause_table() + terms() + alike() + rivals() + claims() + distance_map();
+  if (!d.sentence.empty()) out += "<p class=\"note\">In the words of diagnosis.json: " + html_text(d.sentence) + "</p>";
   page.section("why", "2. Why", "Why", out);
 }
 

@@ -8,7 +8,13 @@
 
 namespace calx {
 
-/// "4.2 g"; without unit for "1". "-" when not finite.
+/// Plain digits where a person reads them easily, else a power of ten: "10000", "9.7 10^-13".
+std::string number_html(double value, int digits = 3);
+
+/// A number of standard deviations; what is next to none is "0".
+std::string distance_html(double deviations);
+
+/// "4.2 g", in the unit given; without unit for "1". "-" when not finite.
 std::string amount_html(double value, const std::string& unit, int digits = 3);
 
 /// "42 %"; "below 0.1 %", "above 99.9 %", since nothing is certain.
@@ -17,17 +23,24 @@ std::string share_html(double share);
 /// "1.1 g too much": signed_error is simulation - measured.
 std::string error_html(double signed_error, const std::string& unit);
 
-/// How likely chance alone gives a difference as large: "easily", "once in 40 times".
+/// Whether chance alone gives a difference as large: "yes, easily", "hardly, about once in 40 times".
 std::string chance_html(double p);
 
 /// How much better the data are foretold: "13 times likelier" for ln 13 nats.
 std::string likelier_html(double nats);
 
+/// A value in SI with the prefix that suits it: "2.37 mm".
+std::string quantity_html(double value, const std::string& si_unit, int digits = 3);
+
+/// "0.4 to 0.6 mm", both with the same prefix.
+std::string range_html(double low, double high, const std::string& si_unit);
+
 /// "gap = 0.42 mm", with the 90 % interval if there is one.
 std::string strength_html(const DiagnosisResult::Amount& amount);
 
-/// What a term outside the library looks like, by the name of its family; "" for others.
-std::string family_html(const std::string& family);
+/// The shape of a departure by the name of its family: a word or two ("jump"), and what such a shape can mean.
+std::string shape_html(const std::string& family);
+std::string shape_meaning_html(const std::string& family);
 
 /// "fitted", "held out", "fitted and held out".
 std::string use_html(const DiagnosisResult::Observable& o);

@@ -11,6 +11,8 @@ namespace {
 using Style = ChartSeries::Style;
 using Numbers = std::vector<double>;
 
+constexpr double much_left = 2;  // sd; a right model would be near 1
+
 /// Simulated less measured.
 struct Miss {
   double mean = DiagnosisResult::unknown;  // unit of the observable
@@ -40,27 +42,32 @@ Miss miss_of_all(const DiagnosisResult::Observable& o, const Numbers& simulated)
 
 std::string DiagnosisSections::held_out_table() const {
   std::vector<std::vector<std::string>> rows = {
-      {"Held-out observable", "Simulation before", "and after", "Typical error before, sd", "after, sd"}};
-  std::string worse;
+      {"Held-out observable", "Simulation before", "and after", "Typical error before, sd", "and after"}};
+  std::string worse, left;
   for (const DiagnosisResult::Observable& o : d.observables) {
     const Miss before = miss_of_all(o, o.before), after = miss_of_all(o, o.after);
     // A tenth and a tenth of an sd: less is nothing that a person could act on.
     if (after.rms > 1.1 * before.rms && after.rms > before.rms + 0.1)
       worse += html_check("bad", html_text(o.name) + " got worse.",
-                          "Typical error " + format_number(before.rms, 2) + " sd before, " +
-                              format_number(after.rms, 2) + " sd after (" + use_html(o) + ").");
+                          "Typical error " + number_html(before.rms, 2) + " sd before, " + number_html(after.rms, 2) +
+                              " sd after (" + use_html(o) + ").");
     if (o.hold.empty()) continue;
     const Miss hold_before = miss_of(o.before, o.hold, o.sd), hold_after = miss_of(o.after, o.hold, o.sd);
     rows.push_back({html_text(o.name), error_html(hold_before.mean, o.unit), error_html(hold_after.mean, o.unit),
-                    format_number(hold_before.rms, 2), format_number(hold_after.rms, 2)});
+                    number_html(hold_before.rms, 2), number_html(hold_after.rms, 2)});
+    if (hold_after.rms > much_left)
+      left += (left.empty() ? "" : ", ") + html_text(o.name) + " " + number_html(hold_after.rms, 2) + " sd";
   }
   std::string out;
   if (rows.size() > 1)
     out += html_table(rows, 3) +
            "<p class=\"note\">Typical error: root mean square over the curve, in standard deviations of the "
-           "measurement; 1 is "
-           "as good as the measurement itself. Before: recalibrated; after: with the cause and recalibrated.</p>";
+           "measurement; 1 is as good as the measurement itself. Before: recalibrated; after: " +
+           added() + " and recalibrated.</p>";
   if (worse.empty()) worse = html_check("good", "No observable got worse.", "Fitted ones included.");
+  if (!left.empty())
+    worse += html_check("open", "Not all is explained.",
+                        "Typical errors that are left: " + left + ". A right model would be near 1.");
   return out + "<ul class=\"checks\">" + worse + "</ul>";
 }
 
@@ -91,10 +98,8 @@ std::string DiagnosisSections::held_out_charts() {
                     {Style::line, "after", o.x, less_measured(o.after, 0), {}, 2}};
     if (o.sd.size() != o.x.size()) chart.series[0].style = Style::line, chart.series[0].error.clear();
     if (runs) {
-      chart.series.push_back(
-          {Style::points, "old case, run with new seeds", o.x, less_measured(c.before, from), {}, 0});
-      chart.series.push_back(
-          {Style::points, "extended case, run with new seeds", o.x, less_measured(c.after, from), {}, 2});
+      chart.series.push_back({Style::points, "before, really run", o.x, less_measured(c.before, from), {}, 0});
+      chart.series.push_back({Style::points, "after, really run", o.x, less_measured(c.after, from), {}, 2});
     }
     out += page.chart(chart);
   }
@@ -109,24 +114,26 @@ std::string DiagnosisSections::confirmation() const {
   std::string out = "<p>The old and the extended case were really run, " + format_number(c.seeds) +
                     " times each with seeds that the diagnosis had not used.</p><ul class=\"checks\">";
   out += html_check(c.passed ? "good" : "bad", c.passed ? "The improvement is there." : "The improvement is not there.",
-                    "Typical error on held-out data " + format_number(c.error_before, 3) + " sd with the old case, " +
-                        format_number(c.error_after, 3) + " sd with the extended one; the held-out data are " +
+                    "Typical error on held-out data " + number_html(c.error_before) + " sd with the old case, " +
+                        number_html(c.error_after) + " sd with the extended one; the held-out data are " +
                         likelier_html(c.gain) + " with it.");
-  if (std::isfinite(c.agreement_p))
+  if (std::isfinite(c.agreement_p)) {
+    const bool agrees = c.agreement_p >= 0.05;
     out += html_check(
-        c.agreement_p < 0.01   ? "bad"
-        : c.agreement_p < 0.05 ? "open"
-                               : "good",
-        c.agreement_p < 0.05 ? "The runs differ from what was foretold." : "The runs agree with what was foretold.",
+        agrees ? "good" : "open",
+        agrees ? "The runs agree with what was foretold." : "The runs differ from what was foretold.",
         "Could chance alone make a difference like this? " + chance_html(c.agreement_p) +
-            " (p = " + format_number(c.agreement_p, 2) +
-            "). What was foretold assumes that a cause of half the strength has half the effect.");
+            " (p = " + number_html(c.agreement_p, 2) + ")." +
+            (agrees ? ""
+                    : " Lines in the plots above are foretold, dots were run. The forecast takes a trace to grow in "
+                      "proportion to the strength of its cause; where it does not, the strength found is rough."));
+  }
   return out + "</ul>";
 }
 
 void DiagnosisSections::worth() {
   std::string out;
-  const bool patch = d.named().empty() && d.after_holds.empty();
+
   if (!d.held_out) {
     out += html_absent("The study holds no data out and its repeats cannot be split, so that no gain can be measured.");
   } else if (!d.has_after()) {
@@ -138,15 +145,15 @@ void DiagnosisSections::worth() {
           "would prove more.</p>";
     if (std::isfinite(d.gain)) {
       const bool enough = d.gain >= d.gain_needed;
-      out += "<ul class=\"checks\">" +
-             html_check(enough ? "good" : "bad", enough ? "The gain is real." : "The gain is too small to count.",
-                        "Data that were not fitted are " + likelier_html(d.gain) + " with the " +
-                            (patch ? "unknown term" : "cause") +
-                            " than with the recalibrated simulation alone; at least " +
-                            format_number(std::exp(d.gain_needed), 2) + " times are asked for. (Log score " +
-                            format_number(d.gain, 3) + " \xc2\xb1 " + format_number(d.gain_sd, 2) + " nats, needed " +
-                            format_number(d.gain_needed, 2) + ".)") +
-             "</ul>";
+      out +=
+          "<ul class=\"checks\">" +
+          html_check(enough ? "good" : "bad", enough ? "The gain is large enough." : "The gain is too small to count.",
+                     "Data that were not fitted are " + likelier_html(d.gain) + " " + added() +
+                         " than with the recalibrated simulation alone; at least " +
+                         format_number(std::exp(d.gain_needed), 2) + " times are asked for. (Log score " +
+                         number_html(d.gain) + " \xc2\xb1 " + number_html(d.gain_sd, 2) + " nats, needed " +
+                         format_number(d.gain_needed, 2) + ".)") +
+          "</ul>";
     }
     out += held_out_table() + held_out_charts();
   }

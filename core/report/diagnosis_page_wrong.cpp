@@ -52,18 +52,13 @@ std::string DiagnosisSections::residual_chart(const DiagnosisResult::Observable&
   chart.x.title = x.title.empty() ? "number" : x.title;
   chart.x.unit = x.unit;
   chart.x.logarithmic = o.log_x;
-  chart.y.title = "difference";
+  chart.y.title = "measured less simulated";
   chart.y.unit = o.unit == "1" ? "" : o.unit;
   const std::vector<double> zero(o.x.size(), 0.0);
   chart.series.push_back({Style::band, "recalibrated simulation", o.x, zero, o.band, 0});
   if (o.band.size() != o.x.size()) chart.series[0].style = Style::line, chart.series[0].error.clear();
   if (d.has_after() && o.after.size() == o.before.size())
-    chart.series.push_back({Style::line,
-                            d.after_holds.empty() && !d.terms.empty() ? "with the unknown term" : "with the cause",
-                            o.x,
-                            difference(o.after, o.before),
-                            {},
-                            2});
+    chart.series.push_back({Style::line, added(), o.x, difference(o.after, o.before), {}, 2});
   add_measured(chart, o, o.x);
   chart.caption =
       "The simulation gives " + error_html(o.signed_error, o.unit) + " on average. Chance? " + chance_html(o.p) + ".";
@@ -75,7 +70,7 @@ std::string DiagnosisSections::single_values_chart() {
   Chart chart;
   chart.title = "Single values";
   chart.x.title = "observable";
-  chart.y.title = "difference / expected scatter";
+  chart.y.title = "measured less simulated / sd";
   std::vector<double> at, after, fit_at, fit, fit_error, hold_at, hold, hold_error;
   for (const DiagnosisResult::Observable& o : d.observables) {
     if (o.x.size() != 1 || o.before.empty()) continue;
@@ -91,11 +86,14 @@ std::string DiagnosisSections::single_values_chart() {
       hold_at.push_back(place + 0.1), hold.push_back((o.hold[0] - o.before[0]) / size), hold_error.push_back(sd / size);
   }
   if (at.empty()) return "";
-  chart.bands = {{0, 1, "recalibrated simulation"}};
-  if (d.has_after()) chart.series.push_back({Style::points, "with the cause", at, after, {}, 2});
+
+  if (d.has_after()) chart.series.push_back({Style::points, added(), at, after, {}, 2});
   if (!fit.empty()) chart.series.push_back({Style::points, "measured, fitted", fit_at, fit, fit_error, 1});
   if (!hold.empty()) chart.series.push_back({Style::points, "measured, held out", hold_at, hold, hold_error, 3});
-  chart.caption = "Zero is the recalibrated simulation; the band is one standard deviation.";
+  // Last, for the first series says where the pointer is.
+  const double end = static_cast<double>(at.size()) - 0.5;
+  chart.series.push_back({Style::band, "recalibrated simulation", {-0.5, end}, {0, 0}, {1, 1}, 0});
+  chart.caption = "One unit is the shade of the other plots: one standard deviation.";
   chart.wide = at.size() > 4;
   return page.chart(chart);
 }
@@ -107,11 +105,10 @@ void DiagnosisSections::wrong() {
   }
   std::string out =
       "<p>Before anything is blamed, the parameters that nobody knows exactly are set anew, so that the simulation "
-      "comes "
-      "as close to the measurements as they allow. What it then still gets wrong:</p>";
+      "comes as close to the measurements as they allow. The difference that is left:</p>";
   std::vector<std::vector<std::string>> rows = {
       {"Observable", "The simulation gives", "Could chance do that?", "Looks like", "z", "p"}};
-  if (d.has_after()) rows[0].push_back("z with the cause");
+  if (!d.named().empty()) rows[0].push_back("z with the cause");
   for (const DiagnosisResult::Observable& o : d.observables) {
     std::string name = "<b>" + html_text(o.name) + "</b><br><small>" + use_html(o) + ", " + noise_html(o);
     const std::string conditions = conditions_html(o);
@@ -119,19 +116,23 @@ void DiagnosisSections::wrong() {
     const std::string mood = mood_of(o.p);
     rows.push_back({name + "</small>",
                     "<span class=\"" + mood + " said\">" + error_html(o.signed_error, o.unit) + "</span>",
-                    chance_html(o.p), html_text(o.looks_like), format_number(o.z, 2), format_number(o.p, 2)});
-    if (d.has_after()) rows.back().push_back(format_number(o.z_after, 2));
+                    chance_html(o.p), shape_html(o.looks_like), number_html(o.z, 2), number_html(o.p, 2)});
+    if (!d.named().empty()) rows.back().push_back(number_html(o.z_after, 2));
   }
   out += html_table(rows, 4);
-  if (std::isfinite(d.fit_p))
+  if (std::isfinite(d.fit_p)) {
     out += "<p>All observables together: would chance alone give differences like these? <b>" + chance_html(d.fit_p) +
-           "</b> (p = " + format_number(d.fit_p, 2) + ").</p>";
+           "</b> (p = " + number_html(d.fit_p, 2) + ").";
+    if (!d.named().empty() && std::isfinite(d.fit_p_with_named))
+      out +=
+          " With the cause: " + chance_html(d.fit_p_with_named) + " (p = " + number_html(d.fit_p_with_named, 2) + ").";
+    out += "</p>";
+  }
   out +=
       "<p class=\"note\">The error is simulation less measurement, averaged over the curve; z is that in its own "
       "standard deviations, so that beyond \xc2\xb1"
-      "3 is much. Chance holds noise of the measurement, scatter between "
-      "seeds, errors of the time step and the tolerance of the study; it looks at shapes too, so that a curve may be "
-      "wrong although its average is right.</p>";
+      "3 is much. Chance holds noise of the measurement, scatter between seeds, errors of the time step and the "
+      "tolerance of the study; it looks at shapes too, so that a curve may be wrong although its average is right.</p>";
   for (const DiagnosisResult::Event& e : d.events)
     out += "<p class=\"note\">Odd value set aside: " + html_text(e.observable) + " at " + format_number(e.x, 4) + ", " +
            format_number(e.z, 2) + " standard deviations off.</p>";

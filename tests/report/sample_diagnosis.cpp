@@ -56,12 +56,12 @@ Json cause(const std::string& id, const std::string& summary, double probability
           {"named", false},
           {"parameters",
            {{{"name", "gap"},
-             {"unit", "mm"},
+             {"unit", "m"},
              {"value", value},
              {"low", 0.8 * value},
              {"high", 1.2 * value},
              {"off", 0},
-             {"range", {0, 2}}}}},
+             {"range", {0, 0.008}}}}},
           {"signal_to_noise", 12 * probability},
           {"instrument", false},
           {"rivals", Json::array()}};
@@ -70,7 +70,7 @@ Json cause(const std::string& id, const std::string& summary, double probability
 }  // namespace
 
 Json sample_diagnosis() {
-  Json leak = cause("calx.leak", "Powder leaks between rotor and housing.", 0.96, 0.5);
+  Json leak = cause("calx.leak", "Powder leaks between rotor and housing.", 0.96, 0.002);
   leak["named"] = true;
   leak["rivals"] = {{{"effect", "calx.worn-pocket"}, {"separate", "turn the rotor slower: a leak grows with time"}}};
   Json j;
@@ -83,8 +83,8 @@ Json sample_diagnosis() {
   j["verdict"] = "named";
   j["reason"] = "probable, fits, and predicts the held-out data";
   j["sentence"] = "The data name a cause.";
-  j["causes"] = {leak, cause("calx.worn-pocket", "A pocket is worn.", 0.02, 0.1),
-                 cause("calx.tilt", "The canister stands at an angle.", 0.001, 0.01)};
+  j["causes"] = {leak, cause("calx.worn-pocket", "A pocket is worn.", 0.02, 0.001),
+                 cause("calx.tilt", "The canister stands at an angle.", 0.001, 0.0001)};
   j["evidence"] = {{"none", 0.003}, {"unknown", 0.015}, {"fit_p", 0.0025}, {"fit_p_with_named", 0.6}};
   j["set"] = {"calx.leak"};
   j["after_holds"] = {"calx.leak"};
@@ -109,7 +109,8 @@ Json sample_diagnosis() {
       {"controls", 40},
       {"controls_named", 0},
       {"powers",
-       {{{"cause", "calx.leak"}, {"strength", 0.5}, {"unit", "mm"}, {"studies", 40}, {"right", 34}, {"wrong", 1}}}},
+       {{{"cause", "calx.leak"}, {"strength", 0.0005}, {"unit", "m"}, {"studies", 40}, {"right", 9}, {"wrong", 0}},
+        {{"cause", "calx.leak"}, {"strength", 0.0021}, {"unit", "m"}, {"studies", 40}, {"right", 34}, {"wrong", 1}}}},
       {"calibration", {{"stated", {0.1, 0.5, 0.9}}, {"observed", {0.02, 0.4, 0.95}}}}};
   j["next"] = {{{"name", "flow by angle"}, {"cost", 2}, {"information_nats", 0.5}, {"clear_verdict", 0.8}},
                {{"name", "a longer fill"}, {"cost", 1}, {"information_nats", 0.1}, {"clear_verdict", 0.2}}};

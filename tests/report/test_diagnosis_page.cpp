@@ -84,14 +84,30 @@ TEST_CASE("p values are told as how often chance does that") {
   CHECK(chance_html(0.7) == "yes, easily");
   CHECK(chance_html(0.1) == "yes, about once in 10 times");
   CHECK(chance_html(0.02) == "hardly, about once in 50 times");
-  CHECK(chance_html(0.0025) == "no, about once in 400 times");
+  CHECK(chance_html(0.0025) == "no, once in 400 times at most");
+  CHECK(chance_html(1.0 / 401) == "no, once in 400 times at most");
+  CHECK(chance_html(1e-12) == "no, less than once in a million times");
   CHECK(chance_html(DiagnosisResult::unknown) == "not known");
+}
+
+TEST_CASE("numbers are digits where a person reads digits, and quantities have prefixes") {
+  CHECK(number_html(100, 2) == "100");
+  CHECK(number_html(169.87, 2) == "170");
+  CHECK(number_html(12345.6) ==
+        "12\xc2\xa0"
+        "300");
+  CHECK(number_html(9.7e-13, 2) ==
+        "9.7\xc2\xb7"
+        "10<sup>-13</sup>");
+  CHECK(quantity_html(0.0023729, "m") == "2.37\xc2\xa0mm");
+  CHECK(range_html(0.0009, 0.00295, "m") == "0.9 to 2.95\xc2\xa0mm");
+  CHECK(range_html(0, 0.99, "1") == "0 to 0.99");
 }
 
 TEST_CASE("nats are told as likelihood, shares never as certainty") {
   CHECK(likelier_html(3) == "20 times likelier");
   CHECK(likelier_html(-3) == "20 times less likely");
-  CHECK(likelier_html(30) == "more than a million times likelier");
+  CHECK(likelier_html(30) == "over a million times likelier");
   CHECK(share_html(1) == "above 99.9\xc2\xa0%");
   CHECK(share_html(0) == "below 0.1\xc2\xa0%");
   CHECK(share_html(0.424) == "42\xc2\xa0%");
@@ -103,7 +119,7 @@ TEST_CASE("a named cause is told with its strength, evidence, rivals, gain and c
   CHECK(has(page,
             "<div class=\"verdict named\"><span class=\"status\">cause named</span><h2>Powder leaks between rotor "
             "and housing</h2>"));
-  CHECK(has(page, "gap = <b>0.5\xc2\xa0mm</b> (90\xc2\xa0% interval 0.4 to 0.6\xc2\xa0mm)"));
+  CHECK(has(page, "gap = <b>2\xc2\xa0mm</b> (90\xc2\xa0% interval 1.6 to 2.4\xc2\xa0mm)"));
   CHECK(has(page, "Look for it at the plant"));
   CHECK(has(page, "<code>calx.leak</code> <span class=\"tag\">named</span>"));
   CHECK(has(page, "style=\"width:96%\""));
@@ -119,12 +135,29 @@ TEST_CASE("a named cause is told with its strength, evidence, rivals, gain and c
             "000 times likelier with the cause"));
   CHECK(has(page, "at least 20 times are asked for"));
   CHECK(has(page, "The improvement is there."));
-  CHECK(has(page, "85\xc2\xa0% <small>(34 of 40)</small>"));
+  CHECK(has(page,
+            "of strength 2.1\xc2\xa0mm would be named right 85\xc2\xa0% <small>(34 of 40)</small>, wrong "
+            "3\xc2\xa0% <small>(1 of 40)</small>"));
   CHECK(has(page, "<b>flow by angle</b> tells most"));
   CHECK(has(page, "the case has no air"));
   CHECK(has(page, "<td>a, b</td>"));
   CHECK(has(page,
             "<span class=\"value\">80</span><span class=\"note\">5 min of run time; planned at most 122, budget 150"));
+}
+
+TEST_CASE("causes that may act beside the named one are told") {
+  json j = sample_diagnosis();
+  CHECK_FALSE(has(page_of(j), "Perhaps at work beside it"));
+  j["causes"][1]["probability"] = 0.4;
+  CHECK(has(page_of(j), "Perhaps at work beside it: <code>calx.worn-pocket</code> (40\xc2\xa0%)."));
+}
+
+TEST_CASE("two causes by one effect are told apart by their parameter") {
+  json j = sample_diagnosis();
+  j["causes"][1]["id"] = "calx.leak", j["causes"][1]["amplitude"] = "width";
+  const std::string page = page_of(j);
+  CHECK(has(page, "<code>calx.leak gap</code>"));
+  CHECK(has(page, "<code>calx.leak width</code>"));
 }
 
 TEST_CASE("an instrument at fault sends the reader to the instrument") {
@@ -197,7 +230,9 @@ TEST_CASE("an ambiguous verdict names what is left and what to measure") {
   CHECK(has(page,
             "Left are the causes <code>calx.leak</code> and <code>calx.worn-pocket</code>, or something that is not "
             "in the library."));
-  CHECK(has(page, "<b>flow by angle</b> would give a clear verdict with 80\xc2\xa0% probability"));
+  CHECK(has(page,
+            "<b>flow by angle</b> tells most of what could be measured; a clear verdict after it has a probability of "
+            "80\xc2\xa0%"));
   j["next"] = json::array();
   page = page_of(j);
   CHECK(has(page, "Measure something else"));
@@ -217,6 +252,8 @@ TEST_CASE("an unknown is told in words and never called a cause") {
   CHECK(has(page, "a jump that stays"));
   CHECK(has(page, "<td class=\"n\">75\xc2\xa0%</td>"));
   CHECK(has(page, "they are no cause"));
+  CHECK(has(page, "<small>in g, against time in s</small>"));
+  CHECK_FALSE(has(page, "Recalibrated with the cause"));
   CHECK(has(page, "with the unknown term than with the recalibrated simulation"));
 }
 

@@ -37,7 +37,7 @@
     var box = document.createElement("div");
     box.className = "legend";
     box.innerHTML = spec.series.map(function (s, i) {
-      return "<span><i style=\"background:" + colourOf(s, i) + "\"></i>" + text(s.name) + "</span>";
+      return "<span><i" + (s.style === "points" ? " class=\"dot\"" : "") + " style=\"background:" + colourOf(s, i) + "\"></i>" + text(s.name) + "</span>";
     }).join("");
     node.insertBefore(box, node.firstChild);
   }
