@@ -104,7 +104,7 @@ Json sample_diagnosis() {
                        {"error_after", 0.6},
                        {"agreement_p", 0.4},
                        {"before", {40, 39, 38, 37, 40, 39, 38, 37, 5.2}},
-                       {"after", {40, 38, 36, 34.4, 40, 38, 36, 34.4, 5.3}}};
+                       {"after", {40, 38, 36, 35.2, 40, 38, 36, 34.4, 5.3}}};
   j["self_test"] = {
       {"controls", 40},
       {"controls_named", 0},

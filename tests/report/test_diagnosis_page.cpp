@@ -2,6 +2,7 @@
 // missing.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -145,6 +146,14 @@ TEST_CASE("a named cause is told with its strength, evidence, rivals, gain and c
             "<span class=\"value\">80</span><span class=\"note\">5 min of run time; planned at most 122, budget 150"));
 }
 
+TEST_CASE("causes stand in the order of their evidence, wherever they stand in the file") {
+  json j = sample_diagnosis();
+  std::reverse(j["causes"].begin(), j["causes"].end());
+  const std::string page = page_of(j);
+  const std::size_t why = page.find("<section id=\"why\">");
+  CHECK(page.find("calx.leak", why) < page.find("calx.worn-pocket", why));
+}
+
 TEST_CASE("causes that may act beside the named one are told") {
   json j = sample_diagnosis();
   CHECK_FALSE(has(page_of(j), "Perhaps at work beside it"));
@@ -182,6 +191,7 @@ TEST_CASE("residuals are measured less simulated, fitted and held out apart, wit
   CHECK(fitted["series"][2]["name"] == "measured, fitted");
   CHECK(fitted["series"][2]["y"] == json({0, -1, -2, -3}));
   CHECK(held["series"][2]["name"] == "measured, held out");
+  CHECK(held["series"][2]["y"] == json({0, -1, -2, -3}));
   // Simulated less measured there; the rows of the second observable are those of the runs.
   CHECK(worth["series"][1]["y"] == json({0, 1, 2, 3}));
   CHECK(worth["series"][2]["y"] == json({0, 0, 0, 0.5}));
@@ -204,7 +214,10 @@ TEST_CASE("held-out errors are computed from the numbers, and what got worse is 
 
 TEST_CASE("distances below 3 are shaded as alike") {
   const std::string page = page_of(sample_diagnosis());
-  CHECK(has(page, "<span class=\"shade near\">2.5</span>"));
+  // True cause calx.leak, imitated by the second one.
+  CHECK(
+      has(page,
+          "<td><code>calx.leak</code></td><td class=\"n\"></td><td class=\"n\"><span class=\"shade near\">2.5</span>"));
   CHECK(has(page, "<span class=\"shade middle\">4</span>"));
   CHECK(has(page, "<span class=\"shade far\">7</span>"));
 }
