@@ -36,6 +36,10 @@ std::string perhaps_beside(const DiagnosisResult& d) {
 
 Banner named_banner(const DiagnosisResult& d) {
   Banner b{"named", "cause named", "", "", ""};
+  if (d.named().empty()) {
+    b.headline = "A cause is named", b.meaning = html_text(d.sentence);
+    return b;
+  }
   bool instrument = false;
   for (const DiagnosisResult::Cause* c : d.named()) {
     std::string summary = c->summary.empty() ? c->label : c->summary;
@@ -71,20 +75,19 @@ Banner ambiguous_banner(const DiagnosisResult& d) {
   }
   Banner b{"ambiguous", "no clear verdict", "These data cannot say what is wrong", "", ""};
   b.meaning = d.reason.empty() ? "" : "Why: " + html_text(d.reason) + ". ";
-  if (!causes.empty() || none || unlisted) {
-    b.meaning += "Left are ";
-    if (!causes.empty()) b.meaning += (causes.size() == 1 ? "the cause " : "the causes ") + names_html(causes);
-    if (none) b.meaning += std::string(causes.empty() ? "" : ", ") + "that nothing is wrong";
-    if (unlisted)
-      b.meaning += std::string(causes.empty() && !none ? "" : ", or ") + "something that is not in the library";
-    b.meaning += ".";
-  }
+  std::string left;
+  const auto add = [&](bool is_left, const std::string& what) {
+    if (is_left) left += (left.empty() ? "Still possible: " : "; ") + what;
+  };
+  add(!causes.empty(), (causes.size() == 1 ? "the cause " : "the causes ") + names_html(causes));
+  add(none, "nothing wrong at all");
+  add(unlisted, "something that is not in the library");
+  b.meaning += left.empty() ? "" : left + ".";
   b.next = "Do not change the case yet: a wrong cause built in makes every later prediction worse. " +
-           (d.next.empty()
-                ? std::string("Measure something else: section 2 says what would tell the causes apart.")
-                : "Measure: <b>" + html_text(d.next[0].name) +
-                      "</b> tells most of what could be measured; a clear verdict after it has a probability of " +
-                      share_html(d.next[0].clear_verdict) + " (section 6).");
+           (d.next.empty() ? std::string("Measure something else: section 2 says what would tell the causes apart.")
+                           : "Measure: <b>" + html_text(d.next[0].name) +
+                                 "</b> tells most for its cost; a clear verdict after it has a probability of " +
+                                 share_html(d.next[0].clear_verdict) + " (section 6).");
   return b;
 }
 
@@ -102,7 +105,7 @@ Banner unknown_banner(const DiagnosisResult& d) {
 }
 
 Banner banner_of(const DiagnosisResult& d) {
-  if (d.verdict == "named" && !d.named().empty()) return named_banner(d);
+  if (d.verdict == "named") return named_banner(d);
   if (d.verdict == "none") return none_banner();
   if (d.verdict == "ambiguous") return ambiguous_banner(d);
   if (d.verdict == "unknown") return unknown_banner(d);

@@ -155,6 +155,8 @@ void read_confusability(Result& d, const Json& j) {
 void read_worth(Result& d, const Json& j) {
   const Json& gain = member(j, "gain");
   d.gain = number(gain, "held_out_log_score"), d.gain_sd = number(gain, "sd"), d.gain_needed = number(gain, "needed");
+  // A gain that was never computed is written as zero with no spread.
+  if (d.gain == 0 && d.gain_sd == 0) d.gain = Result::unknown;
   d.held_out = flag(gain, "held_out", true), d.split_repeats = flag(gain, "split_repeats");
   const Json& runs = member(j, "confirmation");
   auto& c = d.confirmation;

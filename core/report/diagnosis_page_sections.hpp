@@ -24,6 +24,8 @@ struct DiagnosisSections {
  private:
   /// What was added to the recalibrated simulation: "with the cause", "with the unknown term".
   std::string added() const;
+  /// Title, x axis and unit of an observable that is a curve.
+  static Chart curve_of(const DiagnosisResult::Observable& o);
   std::string residual_chart(const DiagnosisResult::Observable& o);
   std::string single_values_chart();
   std::string evidence_bars() const;

@@ -111,7 +111,7 @@ void DiagnosisSections::next() {
   page.section(
       "next", "6. Measure next", "Next",
       "<p>Of the measurements that the study says could be made, <b>" + html_text(d.next[0].name) +
-          "</b> tells most about what is left open." +
+          "</b> tells most for its cost about what is left open." +
           std::string(d.next[0].clear_verdict < 0.5 ? " It is not likely to settle it alone." : "") + "</p>" +
           html_table(rows, 1) +
           "<p class=\"note\">Clear verdict: how likely the measurement leaves one explanation. Information: ln 2, "

@@ -88,6 +88,7 @@ std::string chance_html(double p) {
 
 std::string likelier_html(double nats) {
   if (!std::isfinite(nats)) return "-";
+  if (std::fabs(nats) < 0.1) return "as likely";
   const double times = std::exp(std::fabs(nats));
   std::string out = "over a million times";
   if (times < 1e6) out = format_count(std::stod(format_number(times, 2))) + " times";

@@ -88,11 +88,8 @@ std::string DiagnosisSections::held_out_charts() {
         v.push_back(simulated[offset + k] - o.hold[k]);
       return v;
     };
-    Chart chart;
-    chart.title = o.name;
-    const Quantity x = quantity_of(o.against);
-    chart.x.title = x.title.empty() ? "number" : x.title, chart.x.unit = x.unit, chart.x.logarithmic = o.log_x;
-    chart.y.title = "simulated less measured", chart.y.unit = o.unit == "1" ? "" : o.unit;
+    Chart chart = curve_of(o);
+    chart.y.title = "simulated less measured";
     chart.series = {{Style::band, "measured", o.x, Numbers(o.x.size(), 0.0), o.sd, 3},
                     {Style::line, "before", o.x, less_measured(o.before, 0), {}, 0},
                     {Style::line, "after", o.x, less_measured(o.after, 0), {}, 2}};
@@ -133,7 +130,6 @@ std::string DiagnosisSections::confirmation() const {
 
 void DiagnosisSections::worth() {
   std::string out;
-
   if (!d.held_out) {
     out += html_absent("The study holds no data out and its repeats cannot be split, so that no gain can be measured.");
   } else if (!d.has_after()) {

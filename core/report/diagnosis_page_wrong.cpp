@@ -45,15 +45,20 @@ void add_measured(Chart& chart, const DiagnosisResult::Observable& o, const std:
 
 }  // namespace
 
-std::string DiagnosisSections::residual_chart(const DiagnosisResult::Observable& o) {
+Chart DiagnosisSections::curve_of(const DiagnosisResult::Observable& o) {
   Chart chart;
   chart.title = o.name;
   const Quantity x = quantity_of(o.against);
   chart.x.title = x.title.empty() ? "number" : x.title;
   chart.x.unit = x.unit;
   chart.x.logarithmic = o.log_x;
-  chart.y.title = "measured less simulated";
   chart.y.unit = o.unit == "1" ? "" : o.unit;
+  return chart;
+}
+
+std::string DiagnosisSections::residual_chart(const DiagnosisResult::Observable& o) {
+  Chart chart = curve_of(o);
+  chart.y.title = "measured less simulated";
   const std::vector<double> zero(o.x.size(), 0.0);
   chart.series.push_back({Style::band, "recalibrated simulation", o.x, zero, o.band, 0});
   if (o.band.size() != o.x.size()) chart.series[0].style = Style::line, chart.series[0].error.clear();

@@ -108,6 +108,7 @@ TEST_CASE("numbers are digits where a person reads digits, and quantities have p
 TEST_CASE("nats are told as likelihood, shares never as certainty") {
   CHECK(likelier_html(3) == "20 times likelier");
   CHECK(likelier_html(-3) == "20 times less likely");
+  CHECK(likelier_html(0.01) == "as likely");
   CHECK(likelier_html(30) == "over a million times likelier");
   CHECK(share_html(1) == "above 99.9\xc2\xa0%");
   CHECK(share_html(0) == "below 0.1\xc2\xa0%");
@@ -139,7 +140,7 @@ TEST_CASE("a named cause is told with its strength, evidence, rivals, gain and c
   CHECK(has(page,
             "of strength 2.1\xc2\xa0mm would be named right 85\xc2\xa0% <small>(34 of 40)</small>, wrong "
             "3\xc2\xa0% <small>(1 of 40)</small>"));
-  CHECK(has(page, "<b>flow by angle</b> tells most"));
+  CHECK(has(page, "<b>flow by angle</b> tells most for its cost"));
   CHECK(has(page, "the case has no air"));
   CHECK(has(page, "<td>a, b</td>"));
   CHECK(has(page,
@@ -241,10 +242,10 @@ TEST_CASE("an ambiguous verdict names what is left and what to measure") {
   std::string page = page_of(j);
   CHECK(has(page, "<div class=\"verdict ambiguous\">"));
   CHECK(has(page,
-            "Left are the causes <code>calx.leak</code> and <code>calx.worn-pocket</code>, or something that is not "
-            "in the library."));
+            "Still possible: the causes <code>calx.leak</code> and <code>calx.worn-pocket</code>; something that is "
+            "not in the library."));
   CHECK(has(page,
-            "<b>flow by angle</b> tells most of what could be measured; a clear verdict after it has a probability of "
+            "<b>flow by angle</b> tells most for its cost; a clear verdict after it has a probability of "
             "80\xc2\xa0%"));
   j["next"] = json::array();
   page = page_of(j);
