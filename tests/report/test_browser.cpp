@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "page_text.hpp"
 #include "report/diagnosis_page.hpp"
 #include "report/report.hpp"
 #include "sample_diagnosis.hpp"
@@ -14,14 +15,9 @@
 #include "scratch_folder.hpp"
 
 using calx_test::ScratchFolder;
+using calx_test::slurp;
 
 namespace {
-
-std::string slurp(const std::string& path) {
-  std::ostringstream all;
-  all << std::ifstream(path).rdbuf();
-  return all.str();
-}
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;

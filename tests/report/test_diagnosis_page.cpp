@@ -6,29 +6,24 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "base/error.hpp"
+#include "page_text.hpp"
 #include "report/diagnosis_page.hpp"
 #include "report/diagnosis_page_words.hpp"
 #include "sample_diagnosis.hpp"
 #include "scratch_folder.hpp"
 
 using namespace calx;
+using calx_test::charts_of;
+using calx_test::has;
 using calx_test::sample_diagnosis;
 using calx_test::ScratchFolder;
+using calx_test::slurp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string slurp(const std::string& path) {
-  std::ostringstream all;
-  all << std::ifstream(path).rdbuf();
-  return all.str();
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 bool shows_nan(const std::string& page) { return std::regex_search(page, std::regex("\\b(nan|inf)\\b")); }
 
@@ -40,12 +35,10 @@ std::string page_of(const json& diagnosis) {
   return page.substr(page.find("<header>"), page.find("<footer>") - page.find("<header>"));
 }
 
-json charts_of(const json& diagnosis) {
+json charts_of_page(const json& diagnosis) {
   const ScratchFolder folder;
   calx_test::write_sample_diagnosis(folder.path(), diagnosis);
-  const std::string page = slurp(write_diagnosis_report(folder.path())), open = "id=\"charts\">";
-  const std::size_t from = page.find(open) + open.size();
-  return json::parse(page.substr(from, page.find("</script>", from) - from));
+  return charts_of(slurp(write_diagnosis_report(folder.path())));
 }
 
 json with_verdict(const std::string& verdict) {
@@ -178,7 +171,7 @@ TEST_CASE("an instrument at fault sends the reader to the instrument") {
 }
 
 TEST_CASE("residuals are measured less simulated, fitted and held out apart, with the cause") {
-  const json charts = charts_of(sample_diagnosis());
+  const json charts = charts_of_page(sample_diagnosis());
   const auto chart = [&](const std::string& title, std::size_t which) {
     for (const json& c : charts)
       if (c["title"] == title && which-- == 0) return c;
