@@ -48,8 +48,8 @@ Banner named_banner(const DiagnosisResult& d) {
     instrument = instrument || c->is_instrument;
   }
   b.meaning = "The simulation is wrong, and one explanation stands out: " + what_is_named(d) +
-              ". No other cause of the library, no chance and no recalibration explains the measurements as well, and "
-              "data that were not fitted bear it out." +
+              ". Neither chance nor recalibration nor another cause of the library explains the measurements as well, "
+              "and data that were not fitted bear it out." +
               perhaps_beside(d);
   b.next =
       std::string(instrument ? "Check the instrument: the cause lies in how it was measured, not in the powder. "

@@ -34,13 +34,13 @@ std::string noise_html(const DiagnosisResult::Observable& o) {
   return out;
 }
 
-/// Measured numbers beside what is drawn already: fitted and held-out ones in colours of their own, a little apart.
-void add_measured(Chart& chart, const DiagnosisResult::Observable& o, const std::vector<double>& x) {
-  const std::vector<double>& sd = o.sd;
+/// Fitted and held-out numbers in colours of their own, less the recalibrated simulation.
+void add_measured(Chart& chart, const DiagnosisResult::Observable& o) {
+  const std::vector<double> sd = o.sd.size() == o.x.size() ? o.sd : std::vector<double>();
   if (!o.fit.empty())
-    chart.series.push_back({Style::points, "measured, fitted", x, difference(o.fit, o.before), sd, 1});
+    chart.series.push_back({Style::points, "measured, fitted", o.x, difference(o.fit, o.before), sd, 1});
   if (!o.hold.empty())
-    chart.series.push_back({Style::points, "measured, held out", x, difference(o.hold, o.before), sd, 3});
+    chart.series.push_back({Style::points, "measured, held out", o.x, difference(o.hold, o.before), sd, 3});
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ Chart DiagnosisSections::curve_of(const DiagnosisResult::Observable& o) {
   const Quantity x = quantity_of(o.against);
   chart.x.title = x.title.empty() ? "number" : x.title;
   chart.x.unit = x.unit;
-  chart.x.logarithmic = o.log_x;
+  chart.x.logarithmic = o.log_x && std::all_of(o.x.begin(), o.x.end(), [](double v) { return v > 0; });
   chart.y.unit = o.unit == "1" ? "" : o.unit;
   return chart;
 }
@@ -64,7 +64,7 @@ std::string DiagnosisSections::residual_chart(const DiagnosisResult::Observable&
   if (o.band.size() != o.x.size()) chart.series[0].style = Style::line, chart.series[0].error.clear();
   if (d.has_after() && o.after.size() == o.before.size())
     chart.series.push_back({Style::line, added(), o.x, difference(o.after, o.before), {}, 2});
-  add_measured(chart, o, o.x);
+  add_measured(chart, o);
   chart.caption =
       "The simulation gives " + error_html(o.signed_error, o.unit) + " on average. Chance? " + chance_html(o.p) + ".";
   return page.chart(chart);
@@ -91,14 +91,13 @@ std::string DiagnosisSections::single_values_chart() {
       hold_at.push_back(place + 0.1), hold.push_back((o.hold[0] - o.before[0]) / size), hold_error.push_back(sd / size);
   }
   if (at.empty()) return "";
-
   if (d.has_after()) chart.series.push_back({Style::points, added(), at, after, {}, 2});
   if (!fit.empty()) chart.series.push_back({Style::points, "measured, fitted", fit_at, fit, fit_error, 1});
   if (!hold.empty()) chart.series.push_back({Style::points, "measured, held out", hold_at, hold, hold_error, 3});
   // Last, for the first series says where the pointer is.
   const double end = static_cast<double>(at.size()) - 0.5;
   chart.series.push_back({Style::band, "recalibrated simulation", {-0.5, end}, {0, 0}, {1, 1}, 0});
-  chart.caption = "One unit is the shade of the other plots: one standard deviation.";
+  chart.caption = "In units of what chance may do, one standard deviation.";
   chart.wide = at.size() > 4;
   return page.chart(chart);
 }

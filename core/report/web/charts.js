@@ -279,7 +279,7 @@
       }).join("");
       if (lead === null) return;
       cursor.style("display", null).attr("x1", x(lead)).attr("x2", x(lead));
-      var head = spec.x.categories ? spec.x.categories[lead] : spec.x.title + " " + number(lead) + " " + spec.x.unit;
+      var head = spec.x.categories ? spec.x.categories[Math.round(lead)] : spec.x.title + " " + number(lead) + " " + spec.x.unit;
       tip.show(text(head) + body, at[0] + margin.left, at[1] + margin.top + offset());
     }).on("mouseleave.tip", function () { tip.hide(); cursor.style("display", "none"); })
       .on("dblclick", function () { x.domain(whole); redraw(); });
