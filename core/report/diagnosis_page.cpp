@@ -114,7 +114,7 @@ Banner banner_of(const DiagnosisResult& d) {
 
 std::string cost_card(const DiagnosisResult& d) {
   if (!d.has_cost) return html_card("cost", "-", "cost.json is not there");
-  std::string note = format_number(std::ceil(d.run_seconds / 60)) + " min of run time";
+  std::string note = minutes_html(d.run_seconds) + " of run time";
   if (d.planned > 0) note += "; planned at most " + format_number(d.planned);
   if (d.budget > 0) note += ", budget " + format_number(d.budget);
   return html_card("runs", format_number(d.runs), note);

@@ -1,5 +1,6 @@
 // What a diagnosis does not say: effects that were not tried, assumptions, notes; and where it comes from.
 #include <algorithm>
+#include <cstdlib>
 
 #include "report/diagnosis_page_sections.hpp"
 #include "report/diagnosis_page_words.hpp"
@@ -14,6 +15,14 @@ std::string list_html(const std::vector<std::string>& entries) {
   return out + "</ol>";
 }
 
+/// A cell with many decimals, to four digits; others as they are.
+std::string short_number(const std::string& cell) {
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  const bool is_long = !cell.empty() && *end == '\0' && cell.size() > 6 && cell.find('.') != std::string::npos;
+  return is_long ? format_number(value, 4) : cell;
+}
+
 std::string runs_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::vector<std::string>> out;
   // Names of folders are hashes; runs.csv has them.
@@ -21,7 +30,7 @@ std::string runs_table(const std::vector<std::vector<std::string>>& rows) {
   for (const std::vector<std::string>& row : rows) {
     out.emplace_back();
     for (std::size_t k = 0; k < row.size(); ++k)
-      if (static_cast<std::ptrdiff_t>(k) != folder) out.back().push_back(html_text(row[k]));
+      if (static_cast<std::ptrdiff_t>(k) != folder) out.back().push_back(html_text(short_number(row[k])));
   }
   return html_table(out, out[0].size());
 }
@@ -49,8 +58,8 @@ void DiagnosisSections::provenance() {
   std::string out;
   if (d.has_cost)
     out += "<p>" + format_number(d.runs) + " runs, " + format_number(d.cached) + " of them taken from earlier, " +
-           format_number(d.failed) + " failed; " + format_quantity(d.run_seconds, "s", 3) +
-           " of run time in all, executor " + html_text(d.executor) + ". runs.csv says where each one lies.</p>";
+           format_number(d.failed) + " failed; " + minutes_html(d.run_seconds) + " of run time in all, executor " +
+           html_text(d.executor) + ". runs.csv says where each one lies.</p>";
   else
     out += html_absent("No cost: cost.json is not there.");
   if (d.run_rows.size() > 1)

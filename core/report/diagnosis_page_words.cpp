@@ -86,6 +86,10 @@ std::string chance_html(double p) {
   return p >= 0.01 ? "hardly, about once in " + times : "no, once in " + times + " at most";
 }
 
+std::string minutes_html(double seconds) {
+  return std::isfinite(seconds) ? format_count(std::ceil(seconds / 60)) + "\xc2\xa0min" : "-";
+}
+
 std::string likelier_html(double nats) {
   if (!std::isfinite(nats)) return "-";
   if (std::fabs(nats) < 0.1) return "as likely";

@@ -26,6 +26,9 @@ std::string error_html(double signed_error, const std::string& unit);
 /// Whether chance alone gives a difference as large: "yes, easily", "hardly, about once in 40 times".
 std::string chance_html(double p);
 
+/// Whole minutes, rounded up: "5 min".
+std::string minutes_html(double seconds);
+
 /// How much better the data are foretold: "13 times likelier" for ln 13 nats, "as likely" for none.
 std::string likelier_html(double nats);
 

@@ -139,7 +139,9 @@ void write_sample_diagnosis(const std::string& folder, const Json& diagnosis) {
   write(folder + "/diagnosis.json", diagnosis.dump());
   write(folder + "/extension/fast.json", "{\"title\": \"with <leak>\"}\n");
   write(folder + "/cost.json", R"({"runs": 80, "cached": 3, "failed": 1, "run_seconds": 250, "executor": "local"})");
-  write(folder + "/runs.csv", "stage,case,effects\n\"base\",\"fast\",\"a, b\"\n\"confirmation\",\"slow\",\"\"\n");
+  write(folder + "/runs.csv",
+        "stage,case,effects,wall_s,folder\n\"base\",\"fast\",\"a, "
+        "b\",20.783795928,ab12\n\"confirmation\",\"slow\",\"\",3,cd34\n");
 }
 
 }  // namespace calx_test

@@ -135,9 +135,12 @@ TEST_CASE("a named cause is told with its strength, evidence, rivals, gain and c
             "3\xc2\xa0% <small>(1 of 40)</small>"));
   CHECK(has(page, "<b>flow by angle</b> tells most for its cost"));
   CHECK(has(page, "the case has no air"));
-  CHECK(has(page, "<td>a, b</td>"));
-  CHECK(has(page,
-            "<span class=\"value\">80</span><span class=\"note\">5 min of run time; planned at most 122, budget 150"));
+  CHECK(has(page, "<td>a, b</td><td>20.78</td></tr>"));
+  CHECK_FALSE(has(page, "ab12"));
+  CHECK(has(page, "5\xc2\xa0min of run time in all"));
+  CHECK(has(
+      page,
+      "<span class=\"value\">80</span><span class=\"note\">5\xc2\xa0min of run time; planned at most 122, budget 150"));
 }
 
 TEST_CASE("causes stand in the order of their evidence, wherever they stand in the file") {
