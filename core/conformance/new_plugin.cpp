@@ -36,16 +36,34 @@ std::string renamed(const std::string& text, const std::string& name) {
                   name);
 }
 
+/// Where Calx is installed, or its build tree.
+fs::path prefix() {
+  std::error_code bad;
+  return fs::read_symlink("/proc/self/exe", bad).parent_path().parent_path();
+}
+
 /// In an installation and in a build tree the templates lie at the same place beside the program.
 fs::path template_folder(const std::string& kind) {
   std::error_code bad;
-  const fs::path program = fs::read_symlink("/proc/self/exe", bad);
-  const fs::path folder = program.parent_path() / ".." / "share" / "calx" / "template" / kind;
+  const fs::path folder = prefix() / "share" / "calx" / "template" / kind;
   if (!fs::is_directory(folder, bad))
-    throw Error(Fault::files, folder.lexically_normal().string() +
+    throw Error(Fault::files, folder.string() +
                                   ": the templates of plugins are not there; they are installed with Calx, "
                                   "cmake --install BUILD --component abi");
   return folder;
+}
+
+constexpr const char* kTextKind = "contact-law-text";
+
+/// The files of a project. A law without native code is the text and the case of one that has it.
+std::vector<fs::path> template_files(const std::string& kind) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(template_folder(kind))) files.push_back(entry.path());
+  if (kind == kTextKind)
+    for (const char* shared : {"my_plugin.law.h", "try.json"}) files.push_back(template_folder("contact-law") / shared);
+  std::sort(files.begin(), files.end(),
+            [](const fs::path& a, const fs::path& b) { return a.filename() < b.filename(); });
+  return files;
 }
 
 void check_name(const std::string& name) {
@@ -61,7 +79,7 @@ void check_name(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> new_plugin_kinds() {
-  return {"contact-law", "geometry", "motion", "particle-force", "sensor"};
+  return {"contact-law", kTextKind, "geometry", "motion", "servo", "particle-force", "sensor"};
 }
 
 std::vector<std::string> new_plugin(const std::string& name, const std::string& kind, const std::string& folder) {
@@ -76,9 +94,7 @@ std::vector<std::string> new_plugin(const std::string& name, const std::string& 
     throw Error(Fault::files,
                 project.string() + " is there already and is left as it is; take another name, or remove it");
 
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(template_folder(kind))) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  const std::vector<fs::path> files = template_files(kind);
   if (!fs::create_directory(project, bad)) throw Error(Fault::files, project.string() + ": " + bad.message());
   std::vector<std::string> written;
   for (const fs::path& file : files) {
@@ -91,6 +107,17 @@ std::vector<std::string> new_plugin(const std::string& name, const std::string& 
     written.push_back(to.string());
   }
   return written;
+}
+
+std::string new_plugin_advice(const std::string& name, const std::string& kind, const std::string& folder) {
+  const std::string enter = "  cd " + (fs::path(folder) / name).lexically_normal().string() + "\n";
+  if (kind == kTextKind) return "\nnext:\n" + enter + "  calx plugin check .\n  calx run try.json\n";
+  std::error_code bad;
+  const bool installed = fs::exists(prefix() / "lib" / "cmake" / "CalxAbi", bad);
+  return "\nnext:\n" + enter +
+         "  cmake -S . -B build -DCMAKE_PREFIX_PATH=" + (installed ? prefix().string() : "<where Calx is installed>") +
+         "\n  cmake --build build && ctest --test-dir build --output-on-failure\n"
+         "  calx run try.json --plugin-path build/plugins\n";
 }
 
 }  // namespace calx
