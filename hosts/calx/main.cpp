@@ -14,6 +14,7 @@
 #include "calibrate.hpp"
 #include "calx/abi.h"
 #include "last_words.hpp"
+#include "law.hpp"
 #include "options.hpp"
 #include "paper.hpp"
 #include "plugin_commands.hpp"
@@ -33,15 +34,6 @@ void on_signal(int) {
 void catch_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-}
-
-/// "/time/end=2.0" -> pointer and value.
-std::pair<std::string, std::string> split_override(const std::string& text) {
-  const auto at = text.find('=');
-  if (at == std::string::npos || text.empty() || text[0] != '/')
-    throw calx::Error(calx::Fault::usage,
-                      "--set " + text + ": expected /json/pointer=value, for instance /time/end=2.0");
-  return {text.substr(0, at), text.substr(at + 1)};
 }
 
 struct CaseFlags {
@@ -73,7 +65,7 @@ struct CaseFlags {
       throw calx::Error(calx::Fault::usage, "--arithmetic " + arithmetic + ": expected \"exact\" or \"fast\"");
     run.simulation.fast = arithmetic == "fast";
     run.simulation.mixed = precision == "mixed";
-    for (const auto& s : set) run.overrides.push_back(split_override(s));
+    for (const auto& s : set) run.overrides.push_back(calx::split_override(s, "/time/end=2.0"));
     if (seed >= 0) run.overrides.emplace_back("/seed", std::to_string(seed));
     run.simulation.plugin_path = plugin_path;
     run.simulation.require_pins = require_pins;
@@ -203,6 +195,7 @@ int main(int argc, char** argv) {
 
   calx::add_plugin_command(app);
   calx::add_bench_command(app);
+  calx::add_law_command(app);
   calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);
   calx::add_paper_command(app);
   return guarded(app, run_flags.json, argc, argv);
