@@ -55,12 +55,20 @@ fs::path template_folder(const std::string& kind) {
 
 constexpr const char* kTextKind = "contact-law-text";
 
-/// The files of a project. A law without native code is the text and the case of one that has it.
+/// Files that a project of one kind takes from the template of another: a law without native code the text and the case
+/// of one that has it, others what builds them.
+std::pair<const char*, std::vector<const char*>> shared_files(const std::string& kind) {
+  if (kind == kTextKind) return {"contact-law", {"my_plugin.law.h", "try.json"}};
+  if (kind == "particle-force") return {"contact-law", {"CMakeLists.txt"}};
+  if (kind == "contact-law" || kind == "motion") return {};
+  return {"motion", {"CMakeLists.txt"}};
+}
+
 std::vector<fs::path> template_files(const std::string& kind) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(template_folder(kind))) files.push_back(entry.path());
-  if (kind == kTextKind)
-    for (const char* shared : {"my_plugin.law.h", "try.json"}) files.push_back(template_folder("contact-law") / shared);
+  const auto [owner, shared] = shared_files(kind);
+  for (const char* file : shared) files.push_back(template_folder(owner) / file);
   std::sort(files.begin(), files.end(),
             [](const fs::path& a, const fs::path& b) { return a.filename() < b.filename(); });
   return files;

@@ -13,6 +13,7 @@
 #include "bench.hpp"
 #include "calibrate.hpp"
 #include "calx/abi.h"
+#include "compare.hpp"
 #include "last_words.hpp"
 #include "law.hpp"
 #include "options.hpp"
@@ -41,7 +42,7 @@ struct CaseFlags {
   calx::RunOptions run;
   std::string device = "auto", precision = "double", arithmetic = "exact";
   long long seed = -1;
-  bool quiet = false, json = false, no_report = false, require_pins = false;
+  bool quiet = false, json = false, no_report = false, require_pins = false, safe_mode = false;
 
   void add_common(CLI::App& app) {
     app.add_option("case", run.case_path, "case file (JSON)")->required();
@@ -54,7 +55,9 @@ struct CaseFlags {
     app.add_option("--arithmetic", arithmetic,
                    "exact, or fast: devices may contract a * b + c, to other last digits than the processor's");
     app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(calx::whole_number());
-    app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+    auto* folders = app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+    app.add_flag("--safe-mode", safe_mode, "load only plugins that came with Calx: none of yours, none beside the case")
+        ->excludes(folders);
     app.add_flag("--require-pins", require_pins, "load only plugins whose SHA-256 the case gives");
   }
   calx::RunOptions options() {
@@ -69,6 +72,7 @@ struct CaseFlags {
     if (seed >= 0) run.overrides.emplace_back("/seed", std::to_string(seed));
     run.simulation.plugin_path = plugin_path;
     run.simulation.require_pins = require_pins;
+    run.simulation.safe_mode = safe_mode;
     return run;
   }
 };
@@ -194,6 +198,7 @@ int main(int argc, char** argv) {
   });
 
   calx::add_plugin_command(app);
+  calx::add_compare_command(app);
   calx::add_bench_command(app);
   calx::add_law_command(app);
   calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);

@@ -17,7 +17,7 @@ mv "$scratch/first" "$scratch/prefix"
 prefix=$scratch/prefix
 unset CALX_PLUGIN_PATH
 
-for file in bin/calx share/calx/template/sensor/CMakeLists.txt include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
+for file in bin/calx share/calx/template/sensor/try.json share/doc/calx/kinds.md share/calx/examples/two_balls.json include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
   [[ -e $prefix/$file ]] || fail "$file is not installed"
 done
 if grep -rIl -e "$build" -e "$root" -e "$scratch/first" "$prefix"; then fail "the files above name the build machine"; fi
