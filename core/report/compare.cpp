@@ -153,9 +153,13 @@ void compare_series(RunComparison& c) {
   }
 }
 
-bool is_step(const std::string& name) {
-  return name == "/time/step" || name == "/time/rayleigh_fraction" || name == "/time/integrator" ||
-         name == "/time/hertz_fraction";
+/// One word for what a place of the case gives; empty: nothing that a result depends on.
+std::string cause_of(const std::string& pointer) {
+  for (const char* aside : {"/title", "/assumptions", "/output"})
+    if (pointer.rfind(aside, 0) == 0) return "";
+  if (pointer == "/seed") return "seed";
+  if (pointer == "/time/integrator") return "integrator";
+  return pointer == "/time/step" || pointer == "/time/rayleigh_fraction" ? "time step" : "case";
 }
 
 std::string series_verdict(const RunComparison& c) {
@@ -171,10 +175,8 @@ std::string series_verdict(const RunComparison& c) {
 
 std::string verdict(const RunComparison& c) {
   std::set<std::string> causes;
-  for (const GivenDifference& one : c.given) {
-    if (one.name == "/title" || one.name.rfind("/assumptions", 0) == 0 || one.name.rfind("/output", 0) == 0) continue;
-    causes.insert(one.name == "/seed" ? "seed" : is_step(one.name) ? "time step" : "case");
-  }
+  for (const GivenDifference& one : c.given) causes.insert(cause_of(one.name));
+  causes.erase("");
   for (const GivenDifference& one : c.provenance) {
     // The hash and the name of the case follow from what stands in it.
     if (one.name == "case_sha256" || one.name == "case_file" || one.name == "effects") continue;
