@@ -42,6 +42,7 @@ grep -q 'normal stiffness' "$scratch/describe.txt" || fail "calx plugin describe
 
 # A plugin of the templates, begun, built and checked with what is installed alone.
 "$prefix/bin/calx" plugin new my-force --kind particle-force --in "$scratch" >"$scratch/new.log"
+grep -qF -- "-DCMAKE_PREFIX_PATH=$prefix" "$scratch/new.log" || fail "calx plugin new does not say where Calx is installed"
 { cmake -S "$scratch/my-force" -B "$scratch/my-force/build" -DCMAKE_PREFIX_PATH="$prefix" &&
   cmake --build "$scratch/my-force/build" &&
   ctest --test-dir "$scratch/my-force/build" --output-on-failure --no-tests=error; } >>"$scratch/new.log" 2>&1 ||
