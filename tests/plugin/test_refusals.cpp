@@ -193,7 +193,7 @@ TEST_CASE("a library lying in the working directory is never loaded") {
             " /library: " + plugins.path("bad_trap.so") + " does not exist");
   CHECK(create("test.trap", "").text ==
         "case.json /forces/0: no plugin test.trap of the kind calx.particle-force/1 "
-        "found in no folder");
+        "found in no folder; name its folder with --plugin-path");
   CHECK(create("bad_trap.so", plugins.path()).code == 4);
   CHECK_FALSE(fs::exists(here.path("trap-was-executed")));
 

@@ -154,8 +154,9 @@ TEST_CASE("beside a case only texts are found, never a library") {
   trust.text_folder = beside.path();
   PluginRegistry registry({}, {}, trust);
   CHECK_NOTHROW(registry.create_with_values("org.me.spring", CALX_CONTACT_LAW, "", "", {}));
-  CHECK_THROWS_WITH(registry.create_with_values("test.trap", CALX_PARTICLE_FORCE, "", "", {}),
-                    "no plugin test.trap of the kind calx.particle-force/1 found in no folder");
+  CHECK_THROWS_WITH(
+      registry.create_with_values("test.trap", CALX_PARTICLE_FORCE, "", "", {}),
+      "no plugin test.trap of the kind calx.particle-force/1 found in no folder; name its folder with --plugin-path");
   CHECK_FALSE(fs::exists("trap-was-executed"));
 }
 
