@@ -18,15 +18,19 @@ struct LinearModel {
   std::vector<Matrix> signatures;  // per effect, a column per component, per unit of amplitude
   SeedScatter scatter;
   double common_numbers = 0;      // correlation of runs of one seed
-  Vector partner;                 // run at u without effects, of the seed that all runs with effects share
+  Vector partner;                 // what runs at u of the seed that all runs with effects share have in common
   double base_weight = 1;         // variance of the base mean over that of one run
   double sensitivity_weight = 0;  // variance of J (u' - u) over that of one run, at the posterior of u'
   int runs = 0;
+  double partner_weight = 1;  // variance of what the partner does not share with its seed, over that of one run
 
   /// Response in a run of the partner's seed: the run less what the partner foretells of it, a control variate. Its
   /// noise covariance is response_variance times that of one run.
   Vector response(const Vector& run) const;
   double response_variance() const;
+
+ private:
+  double foretold() const;  // share of partner - base that a run of its seed is expected to show
 };
 
 /// Number of runs of a plan, refinement included.
