@@ -88,6 +88,10 @@ std::string contact_law_fault(const calx_contact_law& law) {
   if (!law.derive && law.given_count != law.pair_count)
     return "it has no derive, so its given and pair tables must be the same, but they have " +
            std::to_string(law.given_count) + " and " + std::to_string(law.pair_count) + " rows";
+  for (std::uint32_t k = 0; k < law.state_count; ++k)
+    if (!law.reach && law.state[k].flags & CALX_FIELD_KEEP_APART)
+      return std::string("its history \"") + law.state[k].name +
+             "\" survives separation, but it has no reach, up to which it could";
   if (law.needs >> CALX_IN_COUNT)
     return "it needs an input column this host does not have (needs = " + std::to_string(law.needs) + ", known are " +
            std::to_string(CALX_IN_COUNT) + " bits)";

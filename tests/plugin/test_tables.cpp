@@ -147,3 +147,13 @@ TEST_CASE("faults of the other kinds") {
   CHECK(interface_fault(CALX_SERVO, &servo) == "its table calx.servo/1 lacks pose");
   CHECK(interface_fault(CALX_MOTION, nullptr) == "it has no table calx.motion/1");
 }
+
+TEST_CASE("history that survives separation needs a reach") {
+  const calx_field row = {"wet", "1", "1 while wet", 0, 1, 0, CALX_FIELD_KEEP_APART, 0};
+  calx_contact_law t = law();
+  t.state = &row;
+  t.state_count = 1;
+  CHECK(fault(t) == "its history \"wet\" survives separation, but it has no reach, up to which it could");
+  t.reach = [](const double*, double, double) { return 1e-3; };
+  CHECK(fault(t) == "");
+}

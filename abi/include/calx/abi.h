@@ -66,7 +66,7 @@ typedef struct calx_field {
 } calx_field;
 #define CALX_FIELD_INTEGER (1u << 0)
 #define CALX_FIELD_ODD (1u << 1)        /* changes sign when i and j trade places */
-#define CALX_FIELD_KEEP_APART (1u << 2) /* history survives separation while the pair is listed */
+#define CALX_FIELD_KEEP_APART (1u << 2) /* history survives separation up to the reach of the law; see contact_law.h */
 #define CALX_FIELD_ACCUMULATE (1u << 3) /* particle column a law adds to and never writes */
 #define CALX_FIELD_CHOICE (1u << 4)     /* unit holds names separated by '|'; the value is the index of one, from 0 */
 #define CALX_FIELD_REQUIRED (1u << 5)   /* the user must give it; the preset only keeps tables and tools working */
