@@ -96,11 +96,11 @@ std::string host_fault(const json& root) {
   const int major = number(abi, "major", "/abi"), minor = number(abi, "minor", "/abi");
   if (major != CALX_ABI_MAJOR)
     return "built for ABI " + std::to_string(major) + "." + std::to_string(minor) + ", this host speaks ABI " +
-           std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + ": rebuild it";
-  const int draft = number(abi, "draft", "/abi");
+           abi_version() + ": rebuild it";
+  const int draft = abi.contains("draft") ? number(abi, "draft", "/abi") : CALX_ABI_DRAFT;
   if (draft != CALX_ABI_DRAFT)
-    return "built against draft " + std::to_string(draft) + ", this host speaks draft " +
-           std::to_string(CALX_ABI_DRAFT) + ": rebuild it";
+    return "built against draft " + std::to_string(draft) + " of the interface, this host speaks the released ABI " +
+           abi_version() + ": rebuild it, and take \"draft\" out of the manifest";
   const auto wanted = root.find("requires");
   if (wanted == root.end()) return "";
   if (!wanted->is_array()) throw Refused{"/requires: " + wanted->dump() + " is not a list"};

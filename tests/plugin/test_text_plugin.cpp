@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string text_manifest(const std::string& id, const std::string& kind, const std::string& more) {
-  return "{\"calx_plugin\": 1, \"abi\": {\"major\": 1, \"minor\": 0, \"draft\": 1}, \"version\": \"1.2.0\", "
+  return "{\"calx_plugin\": 1, \"abi\": {\"major\": 1, \"minor\": 0}, \"version\": \"1.2.0\", "
          "\"vendor\": "
          "\"Me @VERSION@ \\\"x\", \"license\": \"MIT\", \"plugins\": [{\"id\": \"" +
          id + "\", \"kind\": \"" + kind + "\", \"summary\": \"A text.\", " + more + "}]}";
