@@ -136,13 +136,17 @@ void Engine::load(const StateReader& in) {
   stale_ = counts[2] != 0;
   count_changed_ = counts[3] != 0;
 
+  // Laws may reach less far than those that wrote the checkpoint: what they would no longer see has ended.
+  const bool reaches = std::any_of(laws.begin(), laws.end(), [](const LawList* list) { return list && list->reaches; });
   const auto i = in.get_u32("contacts/pairs/i"), j = in.get_u32("contacts/pairs/j");
   std::vector<std::vector<double>> columns(history_.columns);
   for (std::uint32_t k = 0; k < history_.columns; ++k)
     columns[k] = in.get_doubles("contacts/pairs/history" + std::to_string(k));
   for (std::size_t c = 0, e = 0; c < i.size(); ++c) {
     while (e < pairs_.entry_count() && (pairs_.i[e] < i[c] || (pairs_.i[e] == i[c] && pairs_.j[e] < j[c]))) ++e;
-    if (e == pairs_.entry_count() || pairs_.i[e] != i[c] || pairs_.j[e] != j[c])
+    const bool listed = e < pairs_.entry_count() && pairs_.i[e] == i[c] && pairs_.j[e] == j[c];
+    if (!listed && reaches) continue;
+    if (!listed)
       throw Error(Fault::files, "checkpoint: a contact stands between spheres that are far apart; the file is damaged");
     pairs_.touching[e] = 1;
     for (std::uint32_t k = 0; k < history_.columns; ++k) pairs_.history[e * history_.columns + k] = columns[k][c];
@@ -158,8 +162,9 @@ void Engine::load(const StateReader& in) {
     while (row < walls_.row_count() &&
            (walls_.sphere[row] < sphere[c] || (walls_.sphere[row] == sphere[c] && walls_.part[row] < part[c])))
       ++row;
-    if (row == walls_.row_count() || walls_.sphere[row] != sphere[c] || walls_.part[row] != part[c] ||
-        used >= kWallContacts)
+    const bool listed = row < walls_.row_count() && walls_.sphere[row] == sphere[c] && walls_.part[row] == part[c];
+    if (!listed && reaches) continue;
+    if (!listed || used >= kWallContacts)
       throw Error(Fault::files, "checkpoint: a wall contact stands far from its part; the file is damaged");
     const std::size_t slot = row * kWallContacts + used;
     walls_.touching[slot] = 1;
