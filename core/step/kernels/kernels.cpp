@@ -138,7 +138,7 @@ constexpr std::size_t kAhead = 64;
 
 /// Gaps at which the laws of four pairs act, m.
 CALX_INLINE Four gaps_of(const PairScan& scan, const std::uint32_t* i, const std::uint32_t* j) {
-  Four out;
+  Four out = all(0);
   for (int q = 0; q < 4; ++q) {
     const std::uint32_t a = scan.owner ? scan.owner[i[q]] : i[q], b = scan.owner ? scan.owner[j[q]] : j[q];
     out[q] = scan.gaps[std::size_t{scan.material[a]} * scan.materials + scan.material[b]];
