@@ -12,13 +12,13 @@
 #include "base/version.hpp"
 #include "bench.hpp"
 #include "calibrate.hpp"
-#include "calx/abi.h"
 #include "compare.hpp"
 #include "diagnose.hpp"
 #include "last_words.hpp"
 #include "law.hpp"
 #include "options.hpp"
 #include "paper.hpp"
+#include "plugin/tables.hpp"
 #include "plugin_commands.hpp"
 #include "progress.hpp"
 #include "report/calibration_page.hpp"
@@ -152,8 +152,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Calx: how powder fills a canister, by discrete elements", "calx"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("calx ") + calx::version() + " (" + calx::git_revision() + "), ABI " +
-                                        std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) +
-                                        " draft " + std::to_string(CALX_ABI_DRAFT));
+                                        calx::abi_version());
 
   CaseFlags run_flags, check_flags;
   auto* run_command = app.add_subcommand("run", "run a case and write its report");

@@ -7,7 +7,7 @@ import unittest
 
 from calx import EPAM, PLUGIN, PLUGINS, SOURCE, CalxTest, cup, needs
 
-MANIFEST = """{"calx_plugin": 1, "library": "lib.so", "abi": {"major": 1, "minor": 0, "draft": 1}, "version": "1.0.0",
+MANIFEST = """{"calx_plugin": 1, "library": "lib.so", "abi": {"major": 1, "minor": 0}, "version": "1.0.0",
  "vendor": "test", "license": "MIT", "requires": [],
  "plugins": [{"id": "test.force", "kind": "calx.particle-force/1", "summary": "A force for tests."}]}"""
 

@@ -76,8 +76,9 @@ TEST_CASE("the table of the kind is checked") {
   CHECK(reason("null_table") == ": it has no table calx.particle-force/1");
   CHECK(reason("null_eval") == ": its table calx.particle-force/1 lacks eval");
   CHECK(reason("wrong_draft") ==
-        ": its table calx.particle-force/1 was built against draft 7, this host speaks draft 1: rebuild it");
-  CHECK(reason("small_table") == ": its table calx.particle-force/1 has 8 bytes, draft 1 needs 72: rebuild it");
+        ": its table calx.particle-force/1 was built against draft 7, this host speaks the released one of ABI "
+        "1.0: rebuild it");
+  CHECK(reason("small_table") == ": its table calx.particle-force/1 has 8 bytes, ABI 1.0 needs 72: rebuild it");
 }
 
 TEST_CASE("a library that changes the rounding mode is refused and the mode put back") {
