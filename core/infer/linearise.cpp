@@ -76,7 +76,7 @@ double LinearModel::response_variance(int seeds) const {
 int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options) {
   int runs = 1 + 2 * parameters + options.refined;
   for (int n : options.base_runs) runs += n;
-  for (const Effect& effect : effects) runs += effect.instrument ? 0 : effect.components;
+  for (const Effect& effect : effects) runs += effect.instrument ? 0 : effect.components * options.effect_runs;
   return runs;
 }
 
@@ -163,6 +163,28 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     model.partner_weight = 0.5 * pi / static_cast<double>(without.cols());
     responses = clean();
   }
+  // Seeds after the first are those of the last base runs, at the same place, which are their partners.
+  const int seeds = std::min(options.effect_runs, 1 + static_cast<int>(model.base_columns.cols()));
+  if (seeds > 1 && !changed.empty()) {
+    std::vector<RunPoint> more;
+    for (int s = 1; s < seeds; ++s)
+      for (std::size_t k = 1; k < points.size(); ++k) {
+        more.push_back(points[k]);
+        more.back().seed = model.base_seed + static_cast<std::uint64_t>(s - 1);
+      }
+    const Matrix again = simulator.run(more);
+    const auto count = static_cast<Eigen::Index>(changed.size());
+    for (Eigen::Index k = 0; k < count; ++k) {
+      Vector sum = model.response(changed[static_cast<std::size_t>(k)]);
+      int made = 1;
+      for (int s = 1; s < seeds; ++s) {
+        const Vector run = again.col((s - 1) * count + k);
+        if (run.allFinite()) sum += model.response(run, model.base_columns.col(s - 1)), ++made;
+      }
+      if (made > 1) responses[static_cast<std::size_t>(k)] = denoise(sum / made, model.response_variance(made));
+    }
+  }
+  const double variance = seeds > 1 ? model.response_variance(seeds) : model.response_variance();
   std::size_t next = 0;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     Matrix columns(rows, effects[e].components);
@@ -178,7 +200,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     }
     model.signatures.push_back(columns);
     const double step_size = options.step_scales * effects[e].scale;
-    model.signature_variance.push_back(effects[e].instrument ? 0 : model.response_variance() / (step_size * step_size));
+    model.signature_variance.push_back(effects[e].instrument ? 0 : variance / (step_size * step_size));
   }
   for (int k = 0; k < p; ++k)
     model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * steps[k] * steps[k]));

@@ -13,6 +13,7 @@ struct Options {
   // Plan of runs.
   std::vector<int> base_runs = {3, 3, 9};  // with independent seeds, before each of the re-based fits
   double step_scales = 2;                  // amplitude of an effect's run, in its scales
+  int effect_runs = 1;                     // seeds behind each signature
   int refined = 3;                         // effects run again at their fitted amplitudes
   int refined_runs = 1;                    // seeds of each of these
   double common_numbers = -1;              // correlation of runs of one seed, 0..1; -1: estimate it

@@ -27,7 +27,9 @@ struct Plan {
   std::vector<int> base;
   int refined, rounds, rebased, leading, steps, step_seeds;
   std::size_t confirmed;
+  int trials = 1;  // seeds behind each signature: what the budget leaves
 };
+constexpr int most_trials = 3;
 const std::array<Plan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
                                     {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
                                     {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
@@ -66,7 +68,7 @@ std::size_t runs_of(const Study& study, const Library& library, const Plan& plan
   for (const Candidate& c : library.candidates) {
     if (c.info.is_instrument) continue;
     const auto reached = static_cast<std::size_t>(std::count(c.cases.begin(), c.cases.end(), true));
-    runs += static_cast<std::size_t>(c.effect.components) * reached;
+    runs += static_cast<std::size_t>(c.effect.components * plan.trials) * reached;
     most = std::max(most, reached);
   }
   runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
@@ -78,9 +80,12 @@ std::size_t runs_of(const Study& study, const Library& library, const Plan& plan
 /// The richest plan that the budget pays for. Where none does, candidates that the study did not name leave the
 /// library, those that are declared to touch the least of what was measured first.
 Plan plan_of(const Study& study, Library& library, std::size_t* planned) {
-  for (const Plan& plan : plans) {
+  for (Plan plan : plans) {
     *planned = runs_of(study, library, plan);
-    if (*planned <= study.budget) return plan;
+    if (*planned > study.budget) continue;
+    for (Plan more = plan; ++more.trials <= most_trials && runs_of(study, library, more) <= study.budget;) plan = more;
+    *planned = runs_of(study, library, plan);
+    return plan;
   }
   while (*planned > study.budget) {
     std::size_t least = library.candidates.size();
@@ -116,6 +121,7 @@ class Diagnoser {
     d_.options.signature_noise = true;
     d_.options.base_runs = plan_.base;
     d_.options.refined = plan_.refined;
+    d_.options.effect_runs = plan_.trials;
     read_claims();
     say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +
         std::to_string(d_.library.candidates.size()) + " candidate causes, " +

@@ -85,6 +85,26 @@ TEST_CASE("more seeds leave less of the scatter in a signature") {
   CHECK(error(9) < 0.6 * error(1));
 }
 
+TEST_CASE("several seeds behind every signature, in the planned number of runs") {
+  const auto error = [](int seeds, Eigen::Index* runs) {
+    double sum = 0;
+    for (std::uint64_t study = 1; study <= 12; ++study) {
+      Curved simulator(1.0);
+      Options options;
+      options.seed = study, options.effect_runs = seeds, options.common_numbers = 0, options.refined = 0;
+      const LinearModel model = linearise(measured_at(10), small_model().effects, simulator, options);
+      sum += (model.signatures[0] - small_signatures()[0]).topRows(30).squaredNorm();
+      *runs = simulator.runs;
+      CHECK(simulator.runs == planned_runs(small_model().effects, 1, options));
+    }
+    return sum;
+  };
+  Eigen::Index few = 0, many = 0;
+  const double once = error(1, &few);
+  CHECK(error(6, &many) < 0.5 * once);
+  CHECK(many == few + 5 * 3);
+}
+
 TEST_CASE("numbers that an effect cannot reach have no signature there, and an effect that cannot be run has none") {
   Curved simulator(0.3);
   Options options;
