@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "io/io.hpp"
-#include "study/column.hpp"
+#include "study/table.hpp"
 
 namespace calx {
 namespace {
