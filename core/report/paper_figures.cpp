@@ -118,7 +118,13 @@ std::vector<double> values_of(const PaperRows& rows, const PaperRow& row, int fo
     double value = std::numeric_limits<double>::quiet_NaN();
     try {
       value = paper_value(rows, row, form, run);
-      if (!std::isfinite(value)) missing.push_back("Run " + run.dir + " is finished, but its figure is not a number");
+      if (!std::isfinite(value)) {
+        std::string why;
+        for (const PaperTerm& term : row.figure.terms[form])
+          for (const SensorSeries& s : run.sensors)
+            if (s.name == term.sensor && why.empty() && !s.reason.empty()) why = ": " + s.reason;
+        missing.push_back("Run " + run.dir + " is finished, but its figure is not a number" + why);
+      }
     } catch (const Error& e) {
       missing.push_back(e.what());
     }

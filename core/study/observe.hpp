@@ -13,4 +13,7 @@ namespace calx {
 /// or a curve of fields.json. Throws Error(Fault::files) for a folder without them.
 std::vector<double> observe(const std::string& folder, const StudyObservable& observable);
 
+/// Why observe() gives no number there, as a sentence without its full stop.
+std::string why_not(const std::string& folder, const StudyObservable& o);
+
 }  // namespace calx
