@@ -22,7 +22,7 @@ struct Flags {
   std::size_t budget = 0, jobs = 0;
   long long seed = -1;
   std::vector<std::string> plugin_path;
-  bool overwrite = false, quiet = false, no_report = false;
+  bool overwrite = false, quiet = false, no_report = false, print_schema = false;
 };
 
 std::string default_folder(const std::string& study) {
@@ -88,7 +88,7 @@ void calibrate_command(const Flags& flags, bool json, const std::atomic<bool>& s
 void add_calibrate_command(CLI::App& app, bool& json, const std::atomic<bool>& stop, void (*catch_signals)()) {
   auto* command = app.add_subcommand("calibrate", "fit parameters to measured data, and say what the data can tell");
   const auto flags = std::make_shared<Flags>();
-  command->add_option("study", flags->study, "study file (JSON)")->required();
+  command->add_option("study", flags->study, "study file (JSON)");
   command->add_option("-o,--out", flags->out, "folder of the results (default: STUDY.out)");
   command->add_option("--budget", flags->budget, "runs to spend; overrides the study")->check(whole_above_zero());
   command->add_option("--jobs", flags->jobs, "runs at a time (default: cores)")->check(whole_above_zero());
@@ -103,7 +103,15 @@ void add_calibrate_command(CLI::App& app, bool& json, const std::atomic<bool>& s
   command->add_flag("--quiet", flags->quiet, "no progress");
   command->add_flag("--json", json, "progress as JSON lines on stderr");
   command->add_flag("--no-report", flags->no_report, "do not write report.html");
-  command->callback([flags, &json, &stop, catch_signals] { calibrate_command(*flags, json, stop, catch_signals); });
+  command->add_flag("--print-schema", flags->print_schema, "print the JSON Schema of a study");
+  command->callback([flags, &json, &stop, catch_signals] {
+    if (flags->print_schema) {
+      std::printf("%s", study_schema().c_str());
+      return;
+    }
+    if (flags->study.empty()) throw Error(Fault::usage, "calibrate: a study file is needed");
+    calibrate_command(*flags, json, stop, catch_signals);
+  });
 }
 
 }  // namespace calx
