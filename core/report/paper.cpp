@@ -161,7 +161,7 @@ std::string overview(const PaperRows& rows, const std::vector<RowResults>& resul
                      against_measured(row, results[k].form[paper_reduced]), cell(paper_full)});
   }
   return "<p>Mean \xc2\xb1 standard deviation over n seeds; a difference of two runs carries its standard error "
-         "instead. Every figure comes from runs of this machine's folder; nothing is written by hand.</p>" +
+         "instead. Every figure comes from the runs in this page's folder; nothing is written by hand.</p>" +
          html_table(table, 99);
 }
 
