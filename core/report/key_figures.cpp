@@ -60,6 +60,12 @@ void close_ledger(const RunFolder& run, KeyFigures& out) {
 
 }  // namespace
 
+double last_row(const SensorSeries& sensor, const std::string& column) {
+  const int k = sensor.column(column);
+  return k < 0 || sensor.time.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                      : sensor.values[static_cast<std::size_t>(k)].back();
+}
+
 double last_value(const SensorSeries& sensor, const std::string& column) {
   const int k = sensor.column(column);
   if (k >= 0) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "report/key_figures.hpp"
 #include "report/units.hpp"
 
 namespace calx {
@@ -11,19 +12,13 @@ namespace {
 
 const std::string plus_minus = " \xc2\xb1 ", degree = "\xc2\xb0";
 
-double last(const SensorSeries& s, const std::string& column) {
-  const int k = s.column(column);
-  return k < 0 || s.time.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                 : s.values[static_cast<std::size_t>(k)].back();
-}
-
 std::string angle(double value, double error) {
   return format_number(value, 3) + (std::isfinite(error) ? plus_minus + format_number(error, 2) : "") + degree;
 }
 
 /// Name and value of the figure; the value is empty where it is not a number.
 LabFigure figure_of(const SensorSeries& s) {
-  const auto value = [&](const char* column) { return last(s, column); };
+  const auto value = [&](const char* column) { return last_row(s, column); };
   const auto known = [&](const char* column) { return std::isfinite(value(column)); };
   LabFigure out;
   if (s.kind == "bulk-density") {
