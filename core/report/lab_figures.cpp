@@ -1,6 +1,5 @@
 #include "report/lab_figures.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -76,8 +75,7 @@ std::vector<LabFigure> lab_figures(const RunFolder& run) {
       figure.value = "none";
       figure.note = s.reason.empty() ? "no number yet" : s.reason;
     }
-    const auto same = [&](const SensorSeries& other) { return other.kind == s.kind; };
-    if (std::count_if(run.sensors.begin(), run.sensors.end(), same) > 1) figure.note = s.name + ": " + figure.note;
+    if (s.name != figure.name) figure.note = s.name + ": " + figure.note;
     out.push_back(figure);
   }
   return out;

@@ -13,7 +13,7 @@ struct LabFigure {
 };
 
 /// One for each sensor of a kind that a laboratory has a figure for, in the order of the sensors; the note names the
-/// sensor where two are of one kind. "none" with its reason where the last figure is not a number.
+/// sensor unless it is called as the figure is. "none" with its reason where the last figure is not a number.
 std::vector<LabFigure> lab_figures(const RunFolder& run);
 
 }  // namespace calx

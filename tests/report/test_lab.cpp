@@ -108,7 +108,7 @@ TEST_CASE("what a laboratory writes down stands at the head of the page") {
                              "time_s,step_1,stress_Pa,density_kg_m3,cps_percent\n0,0,nan,nan,nan\n"
                              "1,1,500,1200,0\n2,2,15000,1250,4\n3,3,1000,1230,3\n");
   CHECK(has(press.html, "compressibility</span><span class=\"value\">4\xc2\xa0%</span>"));
-  CHECK(has(press.html, "at 15\xc2\xa0kPa"));
+  CHECK(has(press.html, "<span class=\"note\">test: at 15\xc2\xa0kPa</span>"));
 }
 
 TEST_CASE(
