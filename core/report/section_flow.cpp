@@ -90,7 +90,8 @@ std::string pile_charts(Page& page, const RunFolder& run, const SensorSeries& s)
     if (std::isfinite(check))
       chart.caption += " Independent of any fit, from volume and base: " + format_number(check, 3) + degree + ".";
   } else {
-    chart.caption = "No angle" + (s.reason.empty() ? "" : ": " + html_text(s.reason)) + ".";
+    chart.caption =
+        s.reason.empty() ? "No flank was found that gives an angle." : "No angle: " + html_text(s.reason) + ".";
   }
   chart.caption +=
       " Bins of one grain diameter, 95th percentile; lines through 20 to 80 % of the height. Both axes have the "
