@@ -1,4 +1,4 @@
-// schema.hpp: small builders of JSON Schema (draft 2020-12) pieces. Private to this module.
+// schema.hpp: small builders of JSON Schema (draft 2020-12) pieces.
 #pragma once
 #include <string>
 #include <utility>

@@ -5,11 +5,12 @@
 // too), "up" ([0, 0, 1]); the stress is the lid's load over "area". Without: "region", a cylinder or box that stands on
 // the floor and follows the cell; the height is the mean of the upper envelope of the spheres over the region (cells of
 // a 48th of its width), bare floor counting as 0. The envelope lies above the level a ruler would find by a part of a
-// particle. "area" (m^2) is that of the bed, "window" (s, 0.02) as in wall-friction: stress and height are means over
-// the last whole window of the step. "region" says which particles count; without, all.
+// particle. The first row, of step 0, is that of the bed as poured, before the first tap. "area" (m^2) is that of the
+// bed, "window" (s, 0.02) as in wall-friction: stress and height are means over the last whole window of the step.
+// "region" says which particles count; without, all.
 //
 // Columns: step_1, stress_Pa (NaN without lid), height_m, volume_m3, density_kg_m3, solid_fraction_1, cps_percent = 100
-// (V0 - V) / V0 from the first step, drift_1 (relative change of height from the window before to the last), speed_m_s
+// (V0 - V) / V0 from the first row, drift_1 (relative change of height from the window before to the last), speed_m_s
 // of the lid then, inertial_1 = largest of rate * d * sqrt(density / stress) of the step's windows, rate = speed /
 // height. A row for each step; rows between two steps repeat the last one.
 #include <algorithm>
@@ -79,6 +80,11 @@ class CellDensitySensor : public StepSensor {
     return cells > 0 ? sum / cells : nan;
   }
 
+  std::vector<double> before_first(const WorldView& world) override {
+    const bool wanted = cell_.lid.empty() && std::isnan(first_volume_);
+    return wanted ? finish_step(world) : std::vector<double>();
+  }
+
   std::vector<double> finish_step(const WorldView& world) override {
     const Particles& particles = world.particles();
     double mass = 0, solid = 0;
@@ -110,7 +116,7 @@ class CellDensitySensor : public StepSensor {
 
   CellSettings cell_;
   RegionRef region_;
-  double first_volume_ = nan;  // m^3, at the end of the first step
+  double first_volume_ = nan;  // m^3, of the first row
 };
 
 }  // namespace

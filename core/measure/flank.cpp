@@ -4,11 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "base/units.hpp"
+
 namespace calx {
 
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+constexpr double kLeastHeight = 5;  // diameters
+constexpr double kLeastBins = 3;
 
 /// Where a flank lies: [top, toe], the first bin within d of the lowest; found: it is high enough to have an angle.
 struct Extent {
@@ -34,7 +38,7 @@ Extent extent_of(const std::vector<double>& heights, double d) {
   for (std::size_t k = e.top; k < end; ++k)
     if (heights[k] < e.base) e.base = heights[k];
   e.height = heights[e.top] - e.base;
-  if (e.height < 5 * d) return e;
+  if (e.height < kLeastHeight * d) return e;
   e.found = true;
   e.toe = e.top;
   while (!(heights[e.toe] <= e.base + d)) ++e.toe;
@@ -56,12 +60,22 @@ Flank fit_flank(const std::vector<double>& heights, double d) {
     flank.to = x * d;
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }
-  if (n < 3) return {};
+  if (n < kLeastBins) return {};
   const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx) / d;
   flank.angle = std::atan(-slope);
   flank.bins = static_cast<int>(n);
   flank.level = sy / n - slope * d * sx / n;
   return flank;
+}
+
+std::string no_flank(const std::vector<double>& heights, double d) {
+  if (fit_flank(heights, d).bins > 0) return "";
+  const Extent e = extent_of(heights, d);
+  if (!e.found)
+    return "the pile rises " + brief_quantity(e.height / d, "1") + " grain diameters over its lowest place; " +
+           format_number(kLeastHeight) + " are needed";
+  return "fewer than " + format_number(kLeastBins) +
+         " bins of one grain diameter lie between 20 and 80 % of the flank's height";
 }
 
 double volume_angle(const std::vector<double>& heights, double d, bool is_wedge, double& base) {

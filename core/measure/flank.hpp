@@ -1,5 +1,6 @@
 // flank.hpp: the slope of one flank of a pile from its profile.
 #pragma once
+#include <string>
 #include <vector>
 
 namespace calx {
@@ -16,6 +17,9 @@ struct Flank {
 /// 20 and 80 % of it, without the first 2 d and without the last 2 d before the toe, the first bin within d of the
 /// lowest. No angle below a height of 5 d or with fewer than 3 bins.
 Flank fit_flank(const std::vector<double>& heights, double d);
+
+/// Why fit_flank finds no angle, as a sentence without its full stop; empty where it finds one.
+std::string no_flank(const std::vector<double>& heights, double d);
 
 /// The angle that a cone of the profile's volume on its base radius r has, atan(3 V / (pi r^3)), rad; of a wedge's
 /// cross-section V, atan(2 V / r^2). It fits no flank, so it is a check on fit_flank. heights and d as there; V counts

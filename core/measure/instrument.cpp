@@ -37,6 +37,7 @@ class Shown : public Sensor {
   bool wants_every_step() const override { return sensor_->wants_every_step(); }
   void step(const WorldView& world) override { sensor_->step(world); }
   bool row_due() const override { return sensor_->row_due(); }
+  std::string reason() const override { return sensor_->reason(); }
   std::vector<FieldResult> fields() const override { return sensor_->fields(); }
   std::vector<CurveResult> curves() const override { return sensor_->curves(); }
 

@@ -41,6 +41,8 @@ class Sensor {
   virtual void step(const WorldView&) {}
   /// True when step() saw something that deserves a row at once, beside the regular ones; sample() clears it.
   virtual bool row_due() const { return false; }
+  /// Why the figure of the last row is not a number, as a sentence without its full stop; empty when it is one.
+  virtual std::string reason() const { return {}; }
   virtual std::vector<FieldResult> fields() const { return {}; }
   virtual std::vector<CurveResult> curves() const { return {}; }
   virtual void save(StateWriter&, const std::string& /*prefix*/) const {}

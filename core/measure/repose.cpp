@@ -1,7 +1,9 @@
 // repose.cpp: kind "angle-of-repose": flank angles of a pile ("shape": "cone", preset) or of a wedge ("wedge").
 //
-// Keys: "region", "shape", "sectors" (8 to 12; 8), "centre" ([x, y] of the apex, m; found when left out), "direction"
-// (of a wedge: the horizontal direction across its ridge; [1, 0, 0]).
+// Keys: "region", "shape", "sectors" (8 to 12; 8; a wedge has fewer slices where they would be narrower than d),
+// "centre"
+// ([x, y] of the apex, m; found when left out), "direction" (of a wedge: the horizontal direction across its ridge;
+// [1, 0, 0]).
 // One d is the median sphere diameter in the region. The surface is the highest sphere point of each cell of d/4. Cone:
 // sectors of azimuth about the apex, which is the centroid of the surface above 80 % of its height, and bins of radius;
 // wedge: slices along the ridge, and bins of distance from the ridge, the highest bin across the whole width. Bins are
@@ -11,7 +13,8 @@
 //
 // Columns: angle_deg and sd_deg over all sectors, left_deg, left_sd_deg, right_deg, right_sd_deg of those whose middle
 // lies towards -direction and +direction, sectors_1 and bins_1 that gave an angle, apex_x_m, apex_y_m, apex_z_m. Never
-// quote an angle finer than its sd. NaN when fewer than half of the sectors (of a side: none) show a flank.
+// quote an angle finer than its sd. NaN, with a reason, when fewer than half of the sectors (of a side: none) show a
+// flank.
 // volume_angle_deg is an independent check that fits no flank: the angle of a cone of the same volume and base, or of a
 // wedge of the same cross-section (flank.hpp), from the profile; base_m is the radius, or the length, of that base. A
 // rounded apex and a flat toe make it read low. NaN for a ridge, which has two flanks.
@@ -96,11 +99,15 @@ class ReposeSensor : public Sensor {
     profile_ = {"profile", is_wedge_ ? "distance_m" : "radius_m", "height_m", {}, {}};
     each_ = {"sectors", is_wedge_ ? "across_m" : "azimuth_deg", "angle_deg", {}, {}};
     lines_.clear();
+    reason_.clear();
     volume_angle_ = base_ = nan;
     const std::vector<const Record*> spheres = spheres_in(world, region_);
     std::vector<double> row(columns().size(), nan);
     row[6] = row[7] = 0;
-    if (spheres.empty()) return row;
+    if (spheres.empty()) {
+      reason_ = "no particle is in the region";
+      return row;
+    }
     std::vector<double> diameters;
     for (const Record* sphere : spheres) diameters.push_back(2 * sphere->r);
     d_ = percentile(diameters, 0.5);
@@ -110,7 +117,7 @@ class ReposeSensor : public Sensor {
     Angles all, left, right;
     std::size_t possible = sectors_;
     if (is_wedge_) {
-      measure_wedge(cells, apex, left, right);
+      possible = measure_wedge(cells, apex, left, right);
       all = left;
       all.values.insert(all.values.end(), right.values.begin(), right.values.end());
       all.bins += right.bins;
@@ -119,10 +126,18 @@ class ReposeSensor : public Sensor {
     }
     row[6] = static_cast<double>(all.values.size());
     row[7] = all.bins;
-    if (2 * all.values.size() < possible) return row;
+    if (2 * all.values.size() < possible) {
+      if (reason_.empty())
+        reason_ = "a flank shows in " + std::to_string(all.values.size()) + " of " + std::to_string(possible) +
+                  (is_wedge_ ? " slices" : " sectors") + " only; half are needed";
+      return row;
+    }
+    reason_.clear();
     return {all.mean(), all.sd(), left.mean(), left.sd(), right.mean(),  right.sd(), row[6],
             row[7],     apex.x,   apex.y,      apex.z,    volume_angle_, base_};
   }
+
+  std::string reason() const override { return reason_; }
 
   std::vector<CurveResult> curves() const override {
     std::vector<CurveResult> all{profile_, each_};
@@ -213,33 +228,39 @@ class ReposeSensor : public Sensor {
       if (side > 1e-9) right.add(flank);
     }
     const std::vector<double> heights = whole.heights();
+    reason_ = no_flank(heights, d_);
     append_profile(heights, 1);
     add_line("flank", heights, 1);
     volume_angle_ = volume_angle(heights, d_, false, base_) * 180 / pi;
   }
 
-  void measure_wedge(const std::vector<Cell>& cells, const Vec3& apex, Angles& left, Angles& right) {
+  /// Gives the number of slices.
+  std::size_t measure_wedge(const std::vector<Cell>& cells, const Vec3& apex, Angles& left, Angles& right) {
     double low = 1e300, high = -1e300;
     for (const Cell& cell : cells) {
       low = std::min(low, across(cell, apex));
       high = std::max(high, across(cell, apex));
     }
-    std::vector<Bins> slices[2] = {std::vector<Bins>(sectors_), std::vector<Bins>(sectors_)};
+    // A slice narrower than a grain shows single grains, not a surface.
+    const std::size_t count = std::min(sectors_, std::max<std::size_t>(1, static_cast<std::size_t>((high - low) / d_)));
+    std::vector<Bins> slices[2] = {std::vector<Bins>(count), std::vector<Bins>(count)};
     Bins whole[2];
-    const double width = (high - low) * (1 + 1e-9) / static_cast<double>(sectors_);
+    const double width = (high - low) * (1 + 1e-9) / static_cast<double>(count);
     for (const Cell& cell : cells) {
       const double a = along(cell, apex);
       const std::size_t s = width > 0 ? static_cast<std::size_t>((across(cell, apex) - low) / width) : 0;
-      slices[a > 0][std::min(sectors_ - 1, s)].add(std::abs(a), cell.z, d_);
+      slices[a > 0][std::min(count - 1, s)].add(std::abs(a), cell.z, d_);
       whole[a > 0].add(std::abs(a), cell.z, d_);
     }
     for (const bool is_right : {false, true})
-      for (std::size_t s = 0; s < sectors_; ++s) {
+      for (std::size_t s = 0; s < count; ++s) {
         const Flank flank = fit_flank(slices[is_right][s].heights(), d_);
         (is_right ? right : left).add(flank);
         add_sector(low + (static_cast<double>(s) + 0.5) * width, flank);
       }
     const std::vector<double> heights[2] = {whole[0].heights(), whole[1].heights()};
+    // Of the longer side: a wedge at a wall has one.
+    reason_ = no_flank(heights[heights[1].size() > heights[0].size()], d_);
     append_profile(heights[0], -1);
     std::reverse(profile_.x.begin(), profile_.x.end());
     std::reverse(profile_.y.begin(), profile_.y.end());
@@ -247,6 +268,7 @@ class ReposeSensor : public Sensor {
     add_line("flank left", heights[0], -1);
     add_line("flank right", heights[1], 1);
     if (lines_.size() == 1) volume_angle_ = volume_angle(heights[lines_[0].x[0] > 0], d_, true, base_) * 180 / pi;
+    return count;
   }
 
   void add_sector(double place, const Flank& flank) {
@@ -281,6 +303,7 @@ class ReposeSensor : public Sensor {
   double d_ = 0;  // m, median sphere diameter
   CurveResult profile_, each_;
   std::vector<CurveResult> lines_;
+  std::string reason_;
   double volume_angle_ = nan, base_ = nan;  // deg, m
 };
 

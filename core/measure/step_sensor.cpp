@@ -13,15 +13,18 @@ StepSensor::StepSensor(std::string motion, double window, std::size_t width)
 void StepSensor::step(const WorldView& world) {
   windows_.add(look(world), world.time_step());
   // A motion's cycle is computed from the time, so the last bits of a whole number may be missing.
-  const double done = std::floor(world.cycles_of(motion_) + 1e-9);
+  const double cycles = world.cycles_of(motion_), done = std::floor(cycles + 1e-9);
+  if (cycles > 0 && done_ == 0 && done == 0) take(before_first(world));
   if (done <= done_) return;
   done_ = done;
-  std::vector<double> row = finish_step(world);
-  if (!row.empty()) {
-    row_ = std::move(row);
-    due_ = true;
-  }
+  take(finish_step(world));
   windows_.begin();
+}
+
+void StepSensor::take(std::vector<double> row) {
+  if (row.empty()) return;
+  row_ = std::move(row);
+  due_ = true;
 }
 
 std::vector<double> StepSensor::sample(const WorldView& world) {

@@ -10,7 +10,7 @@
 namespace calx {
 
 /// Gathers windows over a step and asks for its row when the motion's cycle has grown by one. Rows between two steps
-/// repeat the last one; before the first, step_1 is 0 and the other columns are NaN.
+/// repeat the last one; before the first, step_1 is 0 and the other columns are NaN, or what before_first gave.
 class StepSensor : public Sensor {
  public:
   /// window: s; width: number of columns.
@@ -27,6 +27,9 @@ class StepSensor : public Sensor {
   virtual StressState look(const WorldView& world) const = 0;
   /// The row of the step that has just ended; empty: it gives none.
   virtual std::vector<double> finish_step(const WorldView& world) = 0;
+  /// The row of the state in which the motion begins, with step_1 0; empty: there is none, or it was given already.
+  /// Called after each time step of the motion's first step.
+  virtual std::vector<double> before_first(const WorldView&) { return {}; }
   /// Figures that are looked up once a row.
   virtual void refresh(const WorldView&) {}
   /// What else belongs into a checkpoint.
@@ -36,6 +39,8 @@ class StepSensor : public Sensor {
   double steps_done() const { return done_; }
 
  private:
+  void take(std::vector<double> row);
+
   std::string motion_;
   Windows windows_;
   double done_ = 0;  // steps of the motion

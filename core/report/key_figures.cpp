@@ -37,15 +37,15 @@ double energy_value(const RunFolder& run, const std::string& name) {
 void close_ledger(const RunFolder& run, KeyFigures& out) {
   const SensorSeries* sensor = run.sensor_of("mass-ledger");
   const double imbalance = sensor ? last_value(*sensor, "imbalance_1") : nan;
-  const double inserted = value_of(run.mass, "inserted_count", nan), inside = value_of(run.mass, "inside_count", nan);
-  const double removed = value_of(run.mass, "removed_count", nan);
-  if (std::isfinite(inserted + inside + removed)) {
-    const bool closed = inserted - inside - removed == 0;  // whole numbers
+  const double inserted = value_of(run.mass, "inserted_particles", nan),
+               inside = value_of(run.mass, "inside_particles", nan), left = value_of(run.mass, "left_particles", nan);
+  if (std::isfinite(inserted + inside + left)) {
+    const bool closed = inserted - inside - left == 0;  // whole numbers
     out.ledger = closed ? KeyFigures::Closed::yes : KeyFigures::Closed::no;
     out.ledger_text = format_count(inserted) + " inserted = " + format_count(inside) + " inside + " +
-                      format_count(removed) + " left" + (closed ? "" : " does not hold");
-  } else if (has_value(run.mass, "closed")) {
-    out.ledger = value_of(run.mass, "closed", 0) != 0 ? KeyFigures::Closed::yes : KeyFigures::Closed::no;
+                      format_count(left) + " left" + (closed ? "" : " does not hold");
+  } else if (has_value(run.mass, "closes")) {
+    out.ledger = value_of(run.mass, "closes", 0) != 0 ? KeyFigures::Closed::yes : KeyFigures::Closed::no;
     out.ledger_text = "as stated in summary.json";
   } else if (!std::isfinite(imbalance)) {
     return;
@@ -59,6 +59,12 @@ void close_ledger(const RunFolder& run, KeyFigures& out) {
 }
 
 }  // namespace
+
+double last_row(const SensorSeries& sensor, const std::string& column) {
+  const int k = sensor.column(column);
+  return k < 0 || sensor.time.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                      : sensor.values[static_cast<std::size_t>(k)].back();
+}
 
 double last_value(const SensorSeries& sensor, const std::string& column) {
   const int k = sensor.column(column);

@@ -35,5 +35,7 @@ CycleFigures cycle_figures(const SensorSeries& sensor);
 
 /// Last finite value of that column; NaN when there is none.
 double last_value(const SensorSeries& sensor, const std::string& column);
+/// Value of the last row, NaN where that row has none: curves of fields.json are those of the same moment.
+double last_row(const SensorSeries& sensor, const std::string& column);
 
 }  // namespace calx

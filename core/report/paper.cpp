@@ -147,9 +147,10 @@ std::string overview(const PaperRows& rows, const std::vector<RowResults>& resul
       const PaperResult& r = results[k].form[form];
       if (!r.exists) return "-";
       if (r.spread.count > 0) return result_html(r, row.unit);
-      return !row.has_figure() && !r.runs.empty()
-                 ? "shape only <small>(n\xc2\xa0=\xc2\xa0" + std::to_string(r.runs.size()) + ")</small>"
-                 : "<i>not\xc2\xa0run</i>";
+      if (!r.runs.empty())
+        return row.has_figure() ? "<i>no figure</i>"
+                                : "shape only <small>(n\xc2\xa0=\xc2\xa0" + std::to_string(r.runs.size()) + ")</small>";
+      return r.begun ? "<i>not finished</i>" : "<i>not\xc2\xa0run</i>";
     };
     table.push_back({"<a href=\"#" + anchor(k) + "\">" + html_text(row.name) + "</a>",
                      reference_html(row.measured, row.unit), reference_html(row.simulated, row.unit),
@@ -157,7 +158,7 @@ std::string overview(const PaperRows& rows, const std::vector<RowResults>& resul
                      against_measured(row, results[k].form[paper_reduced]), cell(paper_full)});
   }
   return "<p>Mean \xc2\xb1 standard deviation over n seeds; a difference of two runs carries its standard error "
-         "instead. Every figure comes from runs of this machine's folder; nothing is written by hand.</p>" +
+         "instead. Every figure comes from the runs in this page's folder; nothing is written by hand.</p>" +
          html_table(table, 99);
 }
 

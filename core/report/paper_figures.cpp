@@ -1,12 +1,12 @@
 #include "report/paper_figures.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/column_name.hpp"
 #include "base/error.hpp"
 #include "base/nearest.hpp"
 #include "base/units.hpp"
@@ -49,18 +49,6 @@ double value_at(const SensorSeries& sensor, std::size_t column, double t) {
   return out;
 }
 
-/// Unit of a column by its name: "density_kg_m3" holds kg/m^3.
-Unit column_unit(const std::string& column) {
-  std::string text;
-  for (const char c : quantity_of(column).unit) {
-    if (std::isdigit(static_cast<unsigned char>(c)) && !text.empty() &&
-        std::isalpha(static_cast<unsigned char>(text.back())))
-      text += '^';
-    text += c;
-  }
-  return parse_unit(text);
-}
-
 double term_value(const PaperRows& rows, const PaperRow& row, const PaperTerm& term, const RunFolder& run) {
   const auto at = std::find_if(run.sensors.begin(), run.sensors.end(),
                                [&](const SensorSeries& s) { return s.name == term.sensor; });
@@ -79,7 +67,7 @@ double term_value(const PaperRows& rows, const PaperRow& row, const PaperTerm& t
   const double end = std::numeric_limits<double>::max();
   double value = value_at(*at, c, term.at.empty() ? end : event_time(rows, row, run, term.at));
   if (!term.since.empty()) value -= value_at(*at, c, event_time(rows, row, run, term.since));
-  const Unit from = column_unit(term.column), to = parse_unit(row.unit);
+  const Unit from = parse_unit(split_column(term.column).unit), to = parse_unit(row.unit);
   if (!same_dimension(from, to))
     fail(rows, row,
          "column \"" + term.column + "\" holds a " + dimension_name(from) + "; the row's unit is " + row.unit);
@@ -130,7 +118,13 @@ std::vector<double> values_of(const PaperRows& rows, const PaperRow& row, int fo
     double value = std::numeric_limits<double>::quiet_NaN();
     try {
       value = paper_value(rows, row, form, run);
-      if (!std::isfinite(value)) missing.push_back("Run " + run.dir + " is finished, but its figure is not a number");
+      if (!std::isfinite(value)) {
+        std::string why;
+        for (const PaperTerm& term : row.figure.terms[form])
+          for (const SensorSeries& s : run.sensors)
+            if (s.name == term.sensor && why.empty() && !s.reason.empty()) why = ": " + s.reason;
+        missing.push_back("Run " + run.dir + " is finished, but its figure is not a number" + why);
+      }
     } catch (const Error& e) {
       missing.push_back(e.what());
     }

@@ -46,7 +46,7 @@ std::string reference_html(const PaperReference& r, const std::string& unit) {
     case Kind::range:
       return with_unit(format_number(r.low, 6) + " to " + format_number(r.high, 6), unit);
     case Kind::sign:
-      return r.sign < 0 ? "negative" : "positive";
+      return r.sign < 0 ? "below 0 (sign only)" : "above 0 (sign only)";
     case Kind::words:
       return html_text(r.words);
     default:
@@ -58,7 +58,9 @@ std::string result_html(const PaperResult& result, const std::string& unit) {
   const Spread& s = result.spread;
   if (s.count == 0) return "-";
   const std::string n = " <small>(n\xc2\xa0=\xc2\xa0" + std::to_string(s.count) + ")</small>";
-  if (s.count < 2 || !(s.deviation > 0)) return with_unit(format_number(s.mean, 5), unit) + n;
+  // One run tells nothing of its scatter; angles scatter by a degree or more.
+  if (s.count < 2) return with_unit(format_number(s.mean, unit == "deg" ? 3 : 4), unit) + n;
+  if (!(s.deviation > 0)) return with_unit(format_number(s.mean, 5), unit) + n;
   // Two digits of the scatter are all that a few seeds can tell.
   const int decimals = std::min(9, std::max(0, 1 - static_cast<int>(std::floor(std::log10(s.deviation)))));
   char text[80];

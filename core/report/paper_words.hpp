@@ -10,7 +10,7 @@ namespace calx {
 const char* paper_form_name(int form);
 /// "g/cm^3" with the power raised; empty for plain numbers.
 std::string unit_html(const std::string& unit);
-/// "38 to 42 deg", "6 g", "negative", or the words; "-" for none.
+/// "38 to 42 deg", "6 g", "below 0 (sign only)", or the words; "-" for none.
 std::string reference_html(const PaperReference& reference, const std::string& unit);
 /// "5.1 &plusmn; 0.4 g (n = 3)", with as many digits as the scatter allows; "-" without a value.
 std::string result_html(const PaperResult& result, const std::string& unit);

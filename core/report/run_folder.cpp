@@ -132,6 +132,7 @@ void read_summary(const json& all, RunFolder& run) {
     s.name = item.key();
     s.kind = text_of(item.value(), {"kind"});
     s.every = number(item.value(), "every", 0);
+    s.reason = text_of(item.value(), {"reason"});
     if (item.value().is_object()) flatten(member(item.value(), "last"), "", s.last);
     run.sensors.push_back(s);
   }

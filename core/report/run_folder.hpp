@@ -25,6 +25,7 @@ struct SensorSeries {
   std::vector<std::vector<double>> values;  // one vector per column, NaN where the file has none
   std::vector<NamedValue> last;
   std::string missing;  // why there are no rows; empty when there are
+  std::string reason;   // why the last figure is not a number; empty: not stated
   /// Number of a column; -1 when there is none of that name.
   int column(const std::string& column_name) const;
 };

@@ -2,8 +2,8 @@
 // drum, and whether the bed moved quasi-statically. Drawn for sensors by their kind, whatever the case.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "report/key_figures.hpp"
 #include "report/sections.hpp"
 #include "report/units.hpp"
 
@@ -16,13 +16,6 @@ const CurveResult* curve_of(const RunFolder& run, const std::string& sensor, con
   for (const auto& [owner, curve] : run.curves)
     if (owner == sensor && curve.name == name) return &curve;
   return nullptr;
-}
-
-/// Value of the last row, NaN where that row has none: the curves are those of the same moment.
-double last_row(const SensorSeries& s, const std::string& column) {
-  const int k = s.column(column);
-  return k < 0 || s.time.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                 : s.values[static_cast<std::size_t>(k)].back();
 }
 
 double largest(const std::vector<double>& values) {
@@ -97,7 +90,8 @@ std::string pile_charts(Page& page, const RunFolder& run, const SensorSeries& s)
     if (std::isfinite(check))
       chart.caption += " Independent of any fit, from volume and base: " + format_number(check, 3) + degree + ".";
   } else {
-    chart.caption = "No flank was found that gives an angle.";
+    chart.caption =
+        s.reason.empty() ? "No flank was found that gives an angle." : "No angle: " + html_text(s.reason) + ".";
   }
   chart.caption +=
       " Bins of one grain diameter, 95th percentile; lines through 20 to 80 % of the height. Both axes have the "

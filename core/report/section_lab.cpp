@@ -15,7 +15,7 @@ constexpr double pi = 3.14159265358979323846;
 /// Above it grains are no longer sheared quasi-statically (GDR MiDi 2004, Eur. Phys. J. E 14, 341).
 constexpr double inertial_limit = 1e-3;
 
-/// A sensor's rows without those that repeat the last step.
+/// A sensor's rows without those that repeat the last step; before them that of a bed as poured, where there is one.
 class StepRows {
  public:
   explicit StepRows(const SensorSeries& s) : series_(s) {
@@ -23,6 +23,9 @@ class StepRows {
     double last = 0;
     for (std::size_t k = 0; step >= 0 && k < s.time.size(); ++k) {
       const double now = s.values[static_cast<std::size_t>(step)][k];
+      const int density = s.column("density_kg_m3");
+      if (now == 0 && rows_.empty() && density >= 0 && std::isfinite(s.values[static_cast<std::size_t>(density)][k]))
+        rows_.push_back(k);
       if (!(now > last)) continue;
       last = now;
       rows_.push_back(k);
@@ -154,9 +157,10 @@ std::string tapping(Page& page, const SensorSeries& s, const StepRows& rows) {
     line.x.push_back(rows.at("step_1", k)), line.y.push_back(rows.at("density_kg_m3", k));
   chart.series.push_back(line);
   const double first = line.y.front(), last = line.y.back();
-  chart.caption = "From " + format_number(first, 4) + " after the first to " + format_number(last, 4) +
-                  "\xc2\xa0kg/m<sup>3</sup> after " + format_number(line.x.back()) + " taps: Hausner ratio " +
-                  format_number(last / first, 4) + ", Carr index " + format_number(100 * (1 - first / last), 3) +
+  chart.caption = "From " + format_number(first, 4) + (line.x.front() == 0 ? " as poured" : " after the first tap") +
+                  " to " + format_number(last, 4) + "\xc2\xa0kg/m<sup>3</sup> after " + format_number(line.x.back()) +
+                  " taps: Hausner ratio " + format_number(last / first, 4) + ", Carr index " +
+                  format_number(100 * (1 - first / last), 3) +
                   "\xc2\xa0%. Height from the upper envelope of the particles.";
   return page.chart(chart);
 }

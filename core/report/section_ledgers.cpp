@@ -114,20 +114,20 @@ std::string ledger_table(const SensorSeries& s) {
   return rows.size() > 1 ? html_table(rows, 1) : "";
 }
 
-// summary.json's ledger: "inserted" with "inserted_count" beside it.
+// summary.json's ledger: "inserted" with "inserted_particles" beside it.
 std::string ledger_table(std::vector<NamedValue> mass) {
   std::vector<std::vector<std::string>> rows = {{"Where", "Particles", "Mass"}};
   // In the order of a balance: what was asked for, what came, where it is, what left; then everything else.
-  const std::vector<std::string> order = {"requested", "delivered", "inserted", "inside", "removed", "left", "lost"};
+  const std::vector<std::string> order = {"requested", "delivered", "inserted", "inside", "left", "lost"};
   const auto rank = [&](const NamedValue& v) { return std::find(order.begin(), order.end(), v.name) - order.begin(); };
   std::stable_sort(mass.begin(), mass.end(),
                    [&](const NamedValue& a, const NamedValue& b) { return rank(a) < rank(b); });
   for (const NamedValue& v : mass) {
-    const std::size_t end = v.name.rfind("count");
-    const bool is_count = end != std::string::npos && end > 0 && end + 5 == v.name.size();
-    if (is_count || v.name == "closed") continue;
-    double count = value_of(mass, v.name + "_count", std::nan(""));
-    if (!std::isfinite(count)) count = value_of(mass, v.name + " count", std::nan(""));
+    const std::string count_of = "_particles";
+    const bool is_count = v.name.size() > count_of.size() &&
+                          v.name.compare(v.name.size() - count_of.size(), count_of.size(), count_of) == 0;
+    if (is_count || v.name == "closes") continue;
+    const double count = value_of(mass, v.name + count_of, std::nan(""));
     std::string name = v.name;
     std::replace(name.begin(), name.end(), '_', ' ');
     rows.push_back(

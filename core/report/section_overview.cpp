@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/lab_figures.hpp"
 #include "report/sections.hpp"
 #include "report/units.hpp"
 
@@ -74,6 +75,8 @@ void Sections::header() {
            " s simulated. The figures below are those of this moment.</p>";
   }
   out += "<div class=\"cards\">";
+  for (const LabFigure& f : lab_figures(run))
+    out += card(html_text(f.name), html_text(f.value), html_text(f.note), f.value == "none" ? "" : "main");
   if (std::isfinite(figures.filled)) {
     out += html_card("mass filled", format_quantity(figures.filled, "kg", 5),
                      figures.fill ? "sensor " + html_text(figures.fill->name) : "sum over cycles", "main");

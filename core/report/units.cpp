@@ -3,47 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <vector>
+
+#include "base/column_name.hpp"
 
 namespace calx {
 namespace {
-
-struct Suffix {
-  const char *ending, *unit;
-};
-// Longest first, so that "kg_m3" is not read as a "m3".
-const std::vector<Suffix>& suffixes() {
-  static const std::vector<Suffix> table = {{"_kg_m2_s", "kg/(m2 s)"},
-                                            {"_rad_s", "rad/s"},
-                                            {"_kg_m3", "kg/m3"},
-                                            {"_kg_s", "kg/s"},
-                                            {"_m_s2", "m/s2"},
-                                            {"_1_s", "1/s"},
-                                            {"_m_s", "m/s"},
-                                            {"_N_m", "N m"},
-                                            {"_Nm", "N m"},
-                                            {"_N_s", "N s"},
-                                            {"_deg_s", "deg/s"},
-                                            {"_percent", "%"},
-                                            {"_deg", "deg"},
-                                            {"_rad", "rad"},
-                                            {"_kPa", "kPa"},
-                                            {"_Pa", "Pa"},
-                                            {"_m3", "m3"},
-                                            {"_m2", "m2"},
-                                            {"_mm", "mm"},
-                                            {"_kg", "kg"},
-                                            {"_Hz", "Hz"},
-                                            {"_g", "g"},
-                                            {"_m", "m"},
-                                            {"_s", "s"},
-                                            {"_N", "N"},
-                                            {"_J", "J"},
-                                            {"_W", "W"},
-                                            {"_K", "K"},
-                                            {"_1", ""}};
-  return table;
-}
 
 std::string with_spaces(std::string text) {
   std::replace(text.begin(), text.end(), '_', ' ');
@@ -53,13 +17,10 @@ std::string with_spaces(std::string text) {
 }  // namespace
 
 Quantity quantity_of(const std::string& column) {
-  for (const Suffix& s : suffixes()) {
-    const std::string ending = s.ending;
-    if (column.size() > ending.size() && column.compare(column.size() - ending.size(), ending.size(), ending) == 0) {
-      return {with_spaces(column.substr(0, column.size() - ending.size())), s.unit};
-    }
-  }
-  return {with_spaces(column), ""};
+  ColumnName name = split_column(column);
+  // As readers write it: "kg/m3", and nothing for a count or a ratio.
+  name.unit.erase(std::remove(name.unit.begin(), name.unit.end(), '^'), name.unit.end());
+  return {with_spaces(name.quantity), name.unit == "1" ? "" : name.unit};
 }
 
 DisplayUnit display_unit(const std::string& unit, double largest) {

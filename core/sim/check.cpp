@@ -7,6 +7,7 @@
 
 #include "base/units.hpp"
 #include "sim/run.hpp"
+#include "sim/source.hpp"
 #include "sim/wall_clock.hpp"
 #include "sim/whole_case.hpp"
 
@@ -68,14 +69,23 @@ std::string check_case(const RunOptions& options) {
     for (const auto& m : c.materials)
       if (m.name == s.material) density = m.density;
     const double each = density * volume * std::pow(s.size.kind == SizeSettings::Kind::fixed ? s.size.scale : 1.0, 3);
-    const double n = s.count > 0  ? static_cast<double>(s.count)
-                     : s.mass > 0 ? s.mass / each
-                                  : static_cast<double>(s.positions.size());
-    mass += n * each;
+    double n = s.count > 0  ? static_cast<double>(s.count)
+               : s.mass > 0 ? s.mass / each
+                            : static_cast<double>(s.positions.size());
+    double delivered = n * each;
+    if (!s.file.empty()) {
+      // Rows bring sizes of their own.
+      const std::vector<Seed> rows = read_seeds(s.file);
+      n = static_cast<double>(rows.size());
+      delivered = 0;
+      for (const Seed& row : rows) delivered += density * volume * row.scale * row.scale * row.scale;
+    }
+    const bool is_given = !s.file.empty() || !s.positions.empty();
+    mass += delivered;
     particles += n;
     spheres += n * static_cast<double>(members);
-    line("Source \"" + s.name + "\": " + brief_quantity(n * each, "kg") + ", about " + format_number(std::round(n)) +
-         " particles of \"" + s.shape + "\"");
+    line("Source \"" + s.name + "\": " + brief_quantity(delivered, "kg") + (is_given ? ", " : ", about ") +
+         format_number(std::round(n)) + " particles of \"" + s.shape + "\"");
   }
   const double steps = c.time.end / sim.time_step(), work = steps * spheres;
   // Measured on two cores of a server of 2024 with Hertz-Mindlin and EpAM; an order of magnitude for other machines.

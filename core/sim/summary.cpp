@@ -98,6 +98,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
       last[columns[m]] = number(facts.last[k][m]);
     j["sensors"][sensor.name()] = {
         {"kind", sensor.kind()}, {"every", sensor.every()}, {"columns", columns}, {"last", last}};
+    if (!sensor.reason().empty()) j["sensors"][sensor.name()]["reason"] = sensor.reason();
   }
   j["events"] = Json::array();
   for (const auto& e : facts.events) j["events"].push_back({{"name", e.first}, {"time", e.second}});

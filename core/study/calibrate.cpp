@@ -53,6 +53,7 @@ class Calibrator {
   Calibrator(const Study& study, Executor& executor, const ProgressSink& sink)
       : study_(study), executor_(executor), sink_(sink), d_(static_cast<Eigen::Index>(study.parameters.size())) {
     box_ = {Eigen::VectorXd::Zero(d_), Eigen::VectorXd::Ones(d_)};
+    gaps_.resize(study.observables.size());
     for (const StudyCase& c : study.cases) {
       const auto asks = [&](const StudyObservable& o) { return o.case_name == c.name; };
       if (std::any_of(study.observables.begin(), study.observables.end(), asks)) cases_.push_back(&c);
@@ -83,6 +84,7 @@ class Calibrator {
     sample();
     predict();
     confirm();
+    tell_gaps();
     return std::move(out_);
   }
 
@@ -170,7 +172,12 @@ class Calibrator {
             if (study_.observables[o].case_name != c->name) continue;
             const std::vector<double> y = observe(out_.runs[row].folder, study_.observables[o]);
             const Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(y.data(), static_cast<Eigen::Index>(y.size()));
-            if (v.allFinite()) place.figures[o].push_back(v);
+            ++gaps_[o].asked;
+            if (v.allFinite()) {
+              place.figures[o].push_back(v);
+            } else if (gaps_[o].missed++ == 0) {
+              gaps_[o].why = why_not(out_.runs[row].folder, study_.observables[o]);
+            }
           }
         }
       places_.push_back(std::make_unique<PlaceRuns>(std::move(place)));
@@ -194,8 +201,7 @@ class Calibrator {
   }
 
   [[noreturn]] void too_few(std::size_t o, std::size_t count) const {
-    std::string why = "the figure is not a number there; look at the series of sensor \"" +
-                      study_.observables[o].sensor + "\", and whether it reaches every measured place";
+    std::string why = "the figure is not a number there: " + gaps_[o].why;
     for (const RunRow& r : out_.runs)
       if (!r.error.empty() && r.case_name == study_.observables[o].case_name) {
         why = "one run says: " + r.error;
@@ -475,6 +481,16 @@ class Calibrator {
     return out;
   }
 
+  /// Runs without a figure leave the emulator blind where they lie, which is seldom by chance.
+  void tell_gaps() {
+    for (std::size_t o = 0; o < gaps_.size(); ++o) {
+      if (gaps_[o].missed == 0) continue;
+      out_.notes.push_back("observable \"" + study_.observables[o].name + "\": " + std::to_string(gaps_[o].missed) +
+                           " of " + counted(gaps_[o].asked, "run") +
+                           " gave no number and are left out; the first: " + gaps_[o].why);
+    }
+  }
+
   /// The cases themselves at the posterior mean, with seeds that no emulator has seen.
   void confirm() {
     stage_ = "confirmation at the posterior mean";
@@ -527,6 +543,12 @@ class Calibrator {
   Eigen::MatrixXd candidates_, unit_samples_;
   std::vector<double> log_density_, implausibility_;
   Samples wide_;
+  /// Finished runs that were asked for an observable, and those that gave no number.
+  struct Gaps {
+    std::size_t asked = 0, missed = 0;
+    std::string why;  // of the first
+  };
+  std::vector<Gaps> gaps_;
   Calibration out_;
 };
 

@@ -34,19 +34,33 @@ std::string time_text(double seconds) {
   return std::to_string(static_cast<int>(seconds / 3600 + 0.5)) + " h";
 }
 
-/// The last line calx wrote, without its name.
-std::string last_line(const std::string& path) {
-  std::string text = fs::exists(path) ? read_text(path) : "";
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
-  text = text.substr(text.rfind('\n') + 1);
-  return text.compare(0, 6, "calx: ") == 0 ? text.substr(6) : text;
+/// The command line of a run of folder/input.json into that folder.
+std::vector<std::string> run_command(const ExecutorSettings& settings, const std::string& folder) {
+  std::vector<std::string> out{
+      settings.program.empty() ? fs::read_symlink("/proc/self/exe").string() : settings.program,
+      "run",
+      folder + "/" + kInput,
+      "-o",
+      folder,
+      "--threads",
+      "1",
+      "--device",
+      "cpu",
+      "--overwrite",
+      "--quiet",
+      "--no-report"};
+  for (const std::string& path : settings.plugin_path) {
+    out.push_back("--plugin-path");
+    out.push_back(fs::absolute(path).string());
+  }
+  return out;
 }
 
 class CachedExecutor : public Executor {
  public:
   explicit CachedExecutor(const ExecutorSettings& settings) : settings_(settings) {
     if (settings.kind == "local")
-      launcher_ = make_local_launcher(settings_);
+      launcher_ = make_local_launcher(settings_, Ending::at_once);
     else if (settings.kind == "slurm")
       launcher_ = make_slurm_launcher(settings_);
     else
@@ -105,7 +119,7 @@ class CachedExecutor : public Executor {
     if (fs::exists(part(key))) return;  // adopted
     fs::create_directories(part(key));
     write_text_atomically(part(key) + "/" + kInput, text);
-    launcher_->start(part(key));
+    launcher_->start(part(key), run_command(settings_, part(key)));
   }
 
   void batch(const std::vector<std::string>& pending, const std::map<std::string, std::string>& texts,
@@ -144,7 +158,7 @@ class CachedExecutor : public Executor {
   }
 
   RunResult finish(const std::string& key, const Ended& e) {
-    const std::string said = last_line(part(key) + "/" + kSaid);
+    const std::string said = last_said(part(key));
     if (e.code == 0 || (e.code == static_cast<int>(Fault::numerics) && stopped_by_itself(key))) {
       if (e.code != 0) write_text_atomically(part(key) + "/" + kFailed, said);
       // A finished run is read, never gone on with.
@@ -194,25 +208,12 @@ class CachedExecutor : public Executor {
 
 }  // namespace
 
-std::vector<std::string> run_command(const ExecutorSettings& settings, const std::string& folder) {
-  std::vector<std::string> out{
-      settings.program.empty() ? fs::read_symlink("/proc/self/exe").string() : settings.program,
-      "run",
-      folder + "/" + kInput,
-      "-o",
-      folder,
-      "--threads",
-      "1",
-      "--device",
-      "cpu",
-      "--overwrite",
-      "--quiet",
-      "--no-report"};
-  for (const std::string& path : settings.plugin_path) {
-    out.push_back("--plugin-path");
-    out.push_back(fs::absolute(path).string());
-  }
-  return out;
+std::string last_said(const std::string& folder) {
+  const std::string path = folder + "/" + kSaid;
+  std::string text = fs::exists(path) ? read_text(path) : "";
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+  text = text.substr(text.rfind('\n') + 1);
+  return text.compare(0, 6, "calx: ") == 0 ? text.substr(6) : text;
 }
 
 std::unique_ptr<Executor> make_executor(const ExecutorSettings& settings) {

@@ -59,19 +59,19 @@ class SlurmLauncher : public Launcher {
 
   std::size_t jobs() const override { return settings_.jobs > 0 ? settings_.jobs : 100; }
 
-  void start(const std::string& folder) override {
+  void start(const std::string& folder, const std::vector<std::string>& words) override {
     std::string script = "#!/bin/sh\n";
-    for (const std::string& w : run_command(settings_, folder)) script += quoted(w) + " ";
+    for (const std::string& w : words) script += quoted(w) + " ";
     const std::string code = folder + "/" + kCode;
     script += "> " + quoted(folder + "/" + kSaid) + " 2>&1\necho $? > " + quoted(code + ".new") + "\nmv " +
               quoted(code + ".new") + " " + quoted(code) + "\n";
     write_text_atomically(folder + "/job.sh", script);
-    std::vector<std::string> words{
+    std::vector<std::string> command{
         "sbatch",   "--parsable",         "--job-name=calx", "--ntasks=1", "--cpus-per-task=1",
         "--output", folder + "/slurm.txt"};
-    words.insert(words.end(), settings_.slurm.begin(), settings_.slurm.end());
-    words.push_back(folder + "/job.sh");
-    const Answer answer = ask(words);
+    command.insert(command.end(), settings_.slurm.begin(), settings_.slurm.end());
+    command.push_back(folder + "/job.sh");
+    const Answer answer = ask(command);
     if (answer.status != 0) {
       std::string why = answer.text;
       std::replace(why.begin(), why.end(), '\n', ' ');

@@ -1,4 +1,4 @@
-// launcher.hpp: starts runs in folders and says when they have ended. Private to study/.
+// launcher.hpp: starts runs in folders and says when they have ended.
 #pragma once
 #include <memory>
 #include <string>
@@ -24,8 +24,8 @@ class Launcher {
   virtual ~Launcher() = default;
   /// How many runs to keep going at a time.
   virtual std::size_t jobs() const = 0;
-  /// Runs folder/input.json into that folder.
-  virtual void start(const std::string& folder) = 0;
+  /// Runs the words, calx and its arguments, for that folder, which exists; what it says goes to kSaid there.
+  virtual void start(const std::string& folder, const std::vector<std::string>& words) = 0;
   /// True when a run started by an earlier process still goes in that folder, or has ended there; it is then watched as
   /// if this process had started it.
   virtual bool adopt(const std::string& folder) = 0;
@@ -35,10 +35,13 @@ class Launcher {
   virtual void stop() = 0;
 };
 
-std::unique_ptr<Launcher> make_local_launcher(const ExecutorSettings& settings);
+/// How stop() and the death of this process end a child: at once, or so that it writes its checkpoint first.
+enum class Ending { at_once, with_checkpoint };
+
+std::unique_ptr<Launcher> make_local_launcher(const ExecutorSettings& settings, Ending ending);
 std::unique_ptr<Launcher> make_slurm_launcher(const ExecutorSettings& settings);
 
-/// The command line of a run: program, "run", ...
-std::vector<std::string> run_command(const ExecutorSettings& settings, const std::string& folder);
+/// The last line that a run said in its folder, without the name of the program.
+std::string last_said(const std::string& folder);
 
 }  // namespace calx

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include "base/column_name.hpp"
 #include "base/error.hpp"
 #include "base/nearest.hpp"
 #include "base/units.hpp"
-#include "study/column.hpp"
+#include "study/table.hpp"
 
 namespace calx {
 namespace {
@@ -83,7 +84,7 @@ struct File {
 
 /// Column's factor to a unit; a column whose name ends in no unit is taken to be in it.
 double factor_of(const Node& node, const std::string& column, const std::string& to) {
-  const std::string from = column_unit(column);
+  const std::string from = split_column(column).unit;
   return from.empty() ? 1 : unit_factor(node, from, to, "column \"" + column + "\"");
 }
 
@@ -104,7 +105,7 @@ std::vector<Repeat> repeats_of(Object& m, const File& file, const StudyObservabl
     if (!x_node) m.need("x", "the column with the places of the measured values");
     const std::string name = x_node->text("a column of the file");
     x = file.column(*x_node, name);
-    const std::string to = column_unit(o.against);
+    const std::string to = split_column(o.against).unit;
     if (!to.empty()) x_factor = factor_of(*x_node, name, to);
   } else if (x_node) {
     x_node->fail("the observable is a last value; name the column it is measured \"against\" to make it a curve");
@@ -220,7 +221,7 @@ void read_measured(Object& observable, StudyObservable& o) {
   const Node node = observable.need("measured", "what was measured: {\"value\": 40.5, \"sd\": 0.5}");
   std::vector<double> at;
   if (const auto n = observable.find("at")) {
-    const std::string unit = column_unit(o.against);
+    const std::string unit = split_column(o.against).unit;
     at = numbers(*n, unit.empty() ? "1" : unit);
     for (std::size_t k = 1; k < at.size(); ++k)
       if (!(at[k] > at[k - 1])) n->fail("the places must rise; value " + std::to_string(k) + " does not");

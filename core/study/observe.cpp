@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "io/io.hpp"
-#include "study/column.hpp"
+#include "study/table.hpp"
 
 namespace calx {
 namespace {
@@ -86,6 +86,14 @@ std::vector<double> observe(const std::string& folder, const StudyObservable& o)
   std::vector<double> out;
   for (const double x : o.measured.x) out.push_back(o.factor * passing(series.x, series.y, x));
   return out;
+}
+
+std::string why_not(const std::string& folder, const StudyObservable& o) {
+  const Json summary = read_json(folder + "/summary.json");
+  const Json::json_pointer place = Json::json_pointer("/sensors") / o.sensor / "reason";
+  if (summary.contains(place) && summary[place].is_string()) return summary[place].get<std::string>();
+  return "the series of sensor \"" + o.sensor + "\" " +
+         (o.against.empty() ? "ends without a number" : "does not reach every measured place");
 }
 
 }  // namespace calx

@@ -16,4 +16,7 @@ std::vector<double> observe(const std::string& folder, const StudyObservable& ob
 /// y where a series first passes x, between its places; beyond its ends by half a sample, the end; else NaN.
 double passing(const std::vector<double>& xs, const std::vector<double>& ys, double x);
 
+/// Why observe() gives no number there, as a sentence without its full stop.
+std::string why_not(const std::string& folder, const StudyObservable& o);
+
 }  // namespace calx

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/column_name.hpp"
 #include "base/error.hpp"
 #include "base/nearest.hpp"
 #include "base/units.hpp"
 #include "config/node.hpp"
 #include "study/case_check.hpp"
-#include "study/column.hpp"
 #include "study/measured.hpp"
 
 namespace calx {
@@ -169,7 +169,7 @@ class StudyReader {
       b.against = o.text("against", "a column of the sensor, \"time_s\" for instance");
       const Node unit = o.need("unit", "of the measured values, \"1\" for none");
       b.unit = unit.text("a unit, \"1\" for none");
-      const std::string own = column_unit(b.column);
+      const std::string own = split_column(b.column).unit;
       b.factor = unit_factor(unit, own.empty() ? b.unit : own, b.unit, "column \"" + b.column + "\" of the sensor");
       b.use = o.choice("use", "a use", {"fit", "hold-out"}, 0) == 0 ? StudyObservable::Use::fit
                                                                     : StudyObservable::Use::hold_out;

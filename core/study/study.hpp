@@ -74,6 +74,9 @@ struct Study {
 /// plugin_path: folders searched first for plugins.
 Study read_study(const std::string& path, const std::vector<std::string>& plugin_path = {});
 
+/// JSON Schema (draft 2020-12) of a study file.
+std::string study_schema();
+
 /// Every kind of observable that a study may name, with what it is.
 const std::vector<std::pair<std::string, std::string>>& observable_kinds();
 

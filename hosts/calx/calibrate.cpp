@@ -33,6 +33,7 @@ void print_result(const Study& study, const Calibration& c) {
 }
 
 void calibrate_command(const StudyFlags& flags, bool json, const std::atomic<bool>& stop, void (*catch_signals)()) {
+  if (flags.only_schema()) return;
   StudySession session(flags, json, stop, catch_signals,
                        {"calibration.json", "cost.json", "runs.csv", "samples.csv", "material.json", "report.html"});
   const Calibration result = calibrate(session.study, *session.executor, session.sink);

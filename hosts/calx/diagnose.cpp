@@ -11,6 +11,7 @@ namespace calx {
 namespace {
 
 void diagnose_command(const StudyFlags& flags, bool json, const std::atomic<bool>& stop, void (*catch_signals)()) {
+  if (flags.only_schema()) return;
   StudySession session(flags, json, stop, catch_signals,
                        {"diagnosis.json", "cost.json", "runs.csv", "extension", "report.html"});
   const StudyDiagnosis result = diagnose_study(session.study, *session.executor, session.sink);

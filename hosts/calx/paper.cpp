@@ -8,25 +8,28 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <thread>
 
 #include "base/error.hpp"
 #include "base/nearest.hpp"
-#include "child_runs.hpp"
 #include "options.hpp"
 #include "report/paper.hpp"
 #include "report/paper_figures.hpp"
+#include "study/launcher.hpp"
 
 namespace calx {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 constexpr char kRows[] = "examples/paper/rows.json";
 
 std::atomic<bool> stop_requested{false};
@@ -99,31 +102,21 @@ std::vector<Wanted> wanted_runs(const PaperRows& rows, const PaperOptions& o, in
   return out;
 }
 
-ChildRun child_of(const Wanted& w, const PaperOptions& o, int form) {
-  ChildRun child;
-  child.name = w.run->name + ", seed " + std::to_string(w.seed);
-  child.messages = w.folder + "/messages.txt";
-  child.arguments = {"run", w.run->forms[form].case_path, "-o", w.folder, "--seed", std::to_string(w.seed)};
-  for (const auto& [pointer, value] : w.run->forms[form].set) {
-    child.arguments.push_back("--set");
-    child.arguments.push_back(pointer + "=" + value);
-  }
+std::vector<std::string> command_of(const Wanted& w, const PaperOptions& o, int form) {
+  std::vector<std::string> words = {"calx",   "run",    w.run->forms[form].case_path, "-o",
+                                    w.folder, "--seed", std::to_string(w.seed)};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    words.push_back(option);
+    words.push_back(value);
+  };
+  for (const auto& [pointer, value] : w.run->forms[form].set) add("--set", pointer + "=" + value);
   // A run that was interrupted goes on; anything else that is in the way is replaced.
   const bool resume = w.state == PaperRunState::unfinished && fs::exists(w.folder + "/checkpoint.h5");
-  child.arguments.push_back(resume ? "--resume" : "--overwrite");
-  if (o.threads > 0) {
-    child.arguments.push_back("--threads");
-    child.arguments.push_back(std::to_string(o.threads));
-  }
-  if (!o.device.empty()) {
-    child.arguments.push_back("--device");
-    child.arguments.push_back(o.device);
-  }
-  for (const std::string& folder : o.plugin_path) {
-    child.arguments.push_back("--plugin-path");
-    child.arguments.push_back(folder);
-  }
-  return child;
+  words.push_back(resume ? "--resume" : "--overwrite");
+  if (o.threads > 0) add("--threads", std::to_string(o.threads));
+  if (!o.device.empty()) add("--device", o.device);
+  for (const std::string& folder : o.plugin_path) add("--plugin-path", folder);
+  return words;
 }
 
 std::string minutes(double seconds) {
@@ -132,38 +125,59 @@ std::string minutes(double seconds) {
   return text;
 }
 
+/// Keeps jobs runs going until all have ended, or a signal asks for the end; running ones then write their checkpoints.
+template <class Report>
+void run_all(const std::vector<Wanted>& runs, const PaperOptions& o, int form, const Report& ended) {
+  ExecutorSettings settings;
+  settings.jobs = o.jobs;
+  const auto launcher = make_local_launcher(settings, Ending::with_checkpoint);
+  std::map<std::string, std::pair<const Wanted*, Clock::time_point>> running;
+  std::size_t next = 0;
+  while (!stop_requested && (next < runs.size() || !running.empty())) {
+    for (; next < runs.size() && running.size() < launcher->jobs(); ++next) {
+      fs::create_directories(runs[next].folder);
+      launcher->start(runs[next].folder, command_of(runs[next], o, form));
+      running[runs[next].folder] = {&runs[next], Clock::now()};
+    }
+    for (const Ended& e : launcher->wait()) {
+      const auto [which, begin] = running.at(e.folder);
+      running.erase(e.folder);
+      ended(*which, e, std::chrono::duration<double>(Clock::now() - begin).count());
+    }
+  }
+}
+
 void compute(const PaperRows& rows, const PaperOptions& o, int form) {
   const FolderLock lock(o.out);
-  const std::vector<Wanted> wanted = wanted_runs(rows, o, form);
-  std::vector<ChildRun> children;
-  for (const Wanted& w : wanted) {
-    if (w.state == PaperRunState::done) continue;
-    fs::create_directories(w.folder);
-    children.push_back(child_of(w, o, form));
-  }
+  std::vector<Wanted> wanted = wanted_runs(rows, o, form);
+  const std::size_t all = wanted.size();
+  wanted.erase(
+      std::remove_if(wanted.begin(), wanted.end(), [](const Wanted& w) { return w.state == PaperRunState::done; }),
+      wanted.end());
   const auto say = [&](const std::string& line) {
     if (!o.quiet) std::fprintf(stderr, "%s\n", line.c_str());
   };
-  say(std::to_string(wanted.size() - children.size()) + " of " + std::to_string(wanted.size()) +
-      " runs are finished and kept; " + std::to_string(children.size()) + " to compute, " + std::to_string(o.jobs) +
-      " at a time");
+  say(std::to_string(all - wanted.size()) + " of " + std::to_string(all) + " runs are finished and kept; " +
+      std::to_string(wanted.size()) + " to compute, " + std::to_string(o.jobs) + " at a time");
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::size_t done = 0;
   double seconds = 0;
   std::string failures;
   int worst = 0;
-  run_children(children, o.jobs, stop_requested, [&](std::size_t k, const ChildResult& result) {
+  run_all(wanted, o, form, [&](const Wanted& w, const Ended& e, double wall_seconds) {
     ++done;
-    seconds += result.wall_seconds;
+    seconds += wall_seconds;
     const double left =
-        seconds / static_cast<double>(done) * static_cast<double>(children.size() - done) / static_cast<double>(o.jobs);
-    say("[" + std::to_string(done) + "/" + std::to_string(children.size()) + "] " + children[k].name + ": " +
-        (result.exit_code == 0 ? "done in " + minutes(result.wall_seconds) : result.error) +
-        (done < children.size() && !stop_requested ? "; about " + minutes(left) + " left" : ""));
-    if (result.exit_code != 0 && result.exit_code != static_cast<int>(Fault::interrupted)) {
-      failures += "\n  " + children[k].name + ": " + result.error;
-      if (worst == 0) worst = result.exit_code;
+        seconds / static_cast<double>(done) * static_cast<double>(wanted.size() - done) / static_cast<double>(o.jobs);
+    const std::string name = w.run->name + ", seed " + std::to_string(w.seed);
+    const std::string error = e.code == 0 ? "" : e.code < 0 ? e.lost : last_said(w.folder);
+    say("[" + std::to_string(done) + "/" + std::to_string(wanted.size()) + "] " + name + ": " +
+        (e.code == 0 ? "done in " + minutes(wall_seconds) : error) +
+        (done < wanted.size() ? "; about " + minutes(left) + " left" : ""));
+    if (e.code != 0 && e.code != static_cast<int>(Fault::interrupted)) {
+      failures += "\n  " + name + ": " + error;
+      if (worst == 0) worst = e.code;
     }
     write_paper(rows, o.seeds, o.out);
   });

@@ -18,6 +18,7 @@ std::string default_folder(const std::string& study) {
 }
 
 Study read(const StudyFlags& flags) {
+  if (flags.study.empty()) throw Error(Fault::usage, "a study file is needed");
   Study study = read_study(flags.study, flags.plugin_path);
   if (flags.budget > 0) study.budget = flags.budget;
   if (flags.jobs > 0) study.executor.jobs = flags.jobs;
@@ -29,7 +30,7 @@ Study read(const StudyFlags& flags) {
 }  // namespace
 
 void StudyFlags::add_to(CLI::App& command, bool& json) {
-  command.add_option("study", study, "study file (JSON)")->required();
+  command.add_option("study", study, "study file (JSON)");
   command.add_option("-o,--out", out, "folder of the results (default: STUDY.out)");
   command.add_option("--budget", budget, "runs to spend; overrides the study")->check(whole_above_zero());
   command.add_option("--jobs", jobs, "runs at a time (default: cores)")->check(whole_above_zero());
@@ -44,6 +45,12 @@ void StudyFlags::add_to(CLI::App& command, bool& json) {
   command.add_flag("--quiet", quiet, "no progress");
   command.add_flag("--json", json, "progress as JSON lines on stderr");
   command.add_flag("--no-report", no_report, "do not write report.html");
+  command.add_flag("--print-schema", print_schema, "print the JSON Schema of a study");
+}
+
+bool StudyFlags::only_schema() const {
+  if (print_schema) std::printf("%s", study_schema().c_str());
+  return print_schema;
 }
 
 StudySession::StudySession(const StudyFlags& flags, bool json, const std::atomic<bool>& stop, void (*catch_signals)(),

@@ -18,9 +18,11 @@ struct StudyFlags {
   std::size_t budget = 0, jobs = 0;
   long long seed = -1;
   std::vector<std::string> plugin_path;
-  bool overwrite = false, quiet = false, no_report = false;
+  bool overwrite = false, quiet = false, no_report = false, print_schema = false;
 
   void add_to(CLI::App& command, bool& json);
+  /// Prints the schema of a study if that is all the user asks for.
+  bool only_schema() const;
 };
 
 /// A study read with its flags applied, and everything it needs to run.

@@ -124,15 +124,36 @@ TEST_CASE("a wedge retained at a wall has one side, a ridge has two") {
   CHECK(std::is_sorted(profile.x.begin(), profile.x.end()));
 }
 
-TEST_CASE("too little pile has no angle but says how many bins there were") {
+TEST_CASE("a narrow wedge has fewer slices, none narrower than a grain") {
+  const double slope = std::tan(35 * degree), length = 40 * d;
+  for (const double diameters : {0.9, 3.5, 6.5}) {
+    FakeWorld world;
+    world.add_box("pile", {-1, -1, -1}, {1, 1, 1});
+    fill(world, {{0, 0, radius}, {length, diameters * d, slope * length}}, 5,
+         [&](double x, double) { return slope * x; });
+    const auto sensor = world.sensor(R"({"region": "pile", "shape": "wedge"})", "angle-of-repose");
+    const auto row = sensor->sample(world);
+    INFO("width ", diameters, " angle ", row[0], " sd ", row[1], " slices ", row[6]);
+    // The surface reaches half a grain beyond the outermost centres.
+    CHECK(row[6] == std::floor(diameters + 1));
+    // Scatter measured over these: up to 0.7 degrees.
+    CHECK(std::abs(row[0] - 35) < 1.5);
+    CHECK(sensor->reason() == "");
+  }
+}
+
+TEST_CASE("too little pile has no angle but says why and how many bins there were") {
   FakeWorld world;
   world.add_box("pile", {-1, -1, -1}, {1, 1, 1});
   const auto sensor = world.sensor(R"({"region": "pile"})", "angle-of-repose");
   auto row = sensor->sample(world);
   CHECK(std::isnan(row[0]));
   CHECK(row[7] == 0);
+  CHECK(sensor->reason() == "no particle is in the region");
   add_cone(world, 35, 4 * d, 0, 0, 1);
   row = sensor->sample(world);
   CHECK(std::isnan(row[0]));
   CHECK(row[6] == 0);
+  CHECK(sensor->reason().find("the pile rises ") == 0);
+  CHECK(sensor->reason().find(" grain diameters over its lowest place; 5 are needed") != std::string::npos);
 }

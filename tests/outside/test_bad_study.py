@@ -128,7 +128,7 @@ class BadStudy(CalxTest):
     def test_run_that_ends_before_the_measured_place(self):
         (self.dir / "curve.csv").write_text(CURVE.replace(",6,", ",60,"))
         self.write(STUDY, "study.json")
-        self.fails(5, 'observable "curve": only 0 of .* places gave it; .*whether it reaches every measured place',
+        self.fails(5, 'observable "curve": only 0 of .* places gave it; the figure is not a number there: the series of sensor ".*" does not reach every measured place',
                    result=self.calx("calibrate", "study.json"))
 
 

@@ -129,6 +129,14 @@ class CommandLine(CalxTest):
         large = self.calx("check", "case.json", "--set", "/time/end=3600", "--threads", 1).out
         self.assertRegex(large, r"Cost: about \d+ min \d\d s on 1 threads?")
 
+    def test_check_counts_the_particles_of_a_file(self):
+        # One ball of 2 mm in radius as it is, one half as large: 1 + 1/8 of 2500 kg/m3 * 4/3 pi (2 mm)^3.
+        (self.dir / "bed.csv").write_text("x_m,y_m,z_m,scale\n0,0,0.004,1\n0,0.006,0.004,0.5\n")
+        source = {"name": "bed", "shape": "ball", "material": "glass", "file": "bed.csv"}
+        text = self.calx("check", self.write(cup({"/sources": [source]}))).out
+        self.assertRegex(text, r'Source "bed": 9\.425e-05 kg, 2 particles of "ball"')
+        self.assertIn("Size: 9.425e-05 kg, 2 particles, 2 spheres", text)
+
     def test_check_goes_over_overrides(self):
         result = self.calx("check", self.write(cup()), "--set", "/sources/0/count=30", "--set", "/materials/glass/young=4e7")
         self.assertIn("about 30 particles", result.out)

@@ -141,7 +141,8 @@ class Console(CalxTest):
         result = self.calx("report", "out")
         self.assertEqual((result.code, result.out), (0, "out/report.html\n"))
         page = (self.dir / "out" / "report.html").read_text()
-        for text in ("balls in a cup", "in cup", "every value is made up", "calx.hertz-mindlin"):
+        for text in ("balls in a cup", "in cup", "every value is made up", "calx.hertz-mindlin", "Mass ledger closes.",
+                     "60 inserted = 60 inside + 0 left"):
             self.assertIn(text, page)
         self.assertNotRegex(page, r'(src|href)="https?://')
         self.fails(FILES, "none is not a folder", "-o of calx run", result=self.calx("report", "none"))

@@ -106,7 +106,7 @@ class Paper(CalxTest):
         self.assertEqual(result.code, NUMERICS, result.err)
         self.assertRegex(result.err, r"not every run ended well:\n  bad, seed 1: .*overlap")
         self.assertTrue(self.summary_of(1).exists())
-        self.assertIn("1.6755\u00a0g", self.page())
+        self.assertIn("1.676\u00a0g", self.page())
         self.assertIn("not finished (stopped", self.page())
 
     def test_bad_requests(self):

@@ -2,6 +2,8 @@
 """peers.py: points that other codes and an experiment gave, run with Calx; results beside the source's own scatter.
 
   peers.py lift N        row N (from 1) of tests/data/wheat/cylinder_lift.csv
+  peers.py column N      the same until the bed has settled: its bulk density alone, a sixteenth of the run
+  peers.py liggghts N    the same column, from the same places, with LIGGGHTS on this machine
   peers.py discharge N   row N of tests/data/wheat/discharge.csv
   peers.py drum RPM      GranuDrum with MCC pellets (tests/data/granudrum), with the friction given
   peers.py penetration --start FILE, soft-drum --start FILE, full-drum --start FILE
@@ -28,11 +30,12 @@ import numpy as np
 
 import dosta
 import evaluate
+import wheat_fill
 
 HERE = pathlib.Path(__file__).resolve().parent
 DATA = HERE.parent / "data"
 RESULTS = HERE / "results.jsonl"
-D = 0.0037  # m, the middle size of the wheat
+SETTLED = 0.4  # s, when the cylinder is lifted or the orifice opened
 START = ("penetration", "soft-drum", "full-drum")
 
 
@@ -60,26 +63,60 @@ def run_case(options, case, changes, folder):
     return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
 
 
-def wheat_changes(options, row):
+def wheat_changes(options, row, folder):
+    start = folder.with_name(folder.name + "-start.csv").resolve()
+    start.parent.mkdir(parents=True, exist_ok=True)
+    wheat_fill.write(start, options.seed)
     at = "/contacts/0/parameters/"
     return {at + "friction": row["mu"], at + "rolling_friction": row["mu_r"], at + "restitution": row["restitution"],
-            "/time/step": options.step}
+            "/time/step": options.step,
+            "/sources": json.dumps([{"name": "fill", "shape": "grain", "material": "wheat", "file": str(start)}])}
+
+
+def density_figure(row, z, r, name="bulk_density_kg_m3"):
+    return {"figure": name, "ours": evaluate.column_density(z, r, wheat_fill.DENSITY, np.pi * 0.04**2),
+            "theirs": row["bulk_density_kg_m3"], "their_sd": 4.0}
+
+
+def column_figure(row, folder):
+    _, _, z, r = frame(folder, SETTLED)
+    return density_figure(row, z, r)
+
+
+def liggghts(options, number, folder):
+    row = rows(DATA / "wheat" / "cylinder_lift.csv")[number - 1]
+    folder.mkdir(parents=True, exist_ok=True)
+    wheat_fill.write_liggghts(folder / "start.data", options.seed)
+    variables = {"start": "start.data", "end": "end.txt", "friction": row["mu"], "rolling": row["mu_r"],
+                 "restitution": row["restitution"], "step": options.step, "count": round(SETTLED / options.step)}
+    command = ["liggghts", "-in", str(HERE / "cases" / "wheat_column.liggghts")]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
+    subprocess.run(command, check=True, cwd=folder, stdout=subprocess.DEVNULL)
+    _, _, z, r = np.loadtxt(folder / "end.txt", skiprows=9).T
+    summary = {"time_step": options.step, "particles": len(z), "provenance": {"git": "Debian liggghts"}}
+    return [density_figure(row, z, r, "bulk_density_kg_m3 of LIGGGHTS here")], summary
+
+
+def column(options, number, folder):
+    row = rows(DATA / "wheat" / "cylinder_lift.csv")[number - 1]
+    changes = {**wheat_changes(options, row, folder), "/time/end": SETTLED}
+    summary = run_case(options, "wheat_lift.json", changes, folder)
+    return [column_figure(row, folder)], summary
 
 
 def lift(options, number, folder):
     row = rows(DATA / "wheat" / "cylinder_lift.csv")[number - 1]
-    summary = run_case(options, "wheat_lift.json", wheat_changes(options, row), folder)
-    settled, end = frame(folder, 0.4), frame(folder, summary["time"])
-    density = evaluate.column_density(settled[2], settled[3], 1400, D, np.pi * 0.04**2)
+    summary = run_case(options, "wheat_lift.json", wheat_changes(options, row, folder), folder)
     own = summary["sensors"]["angle of repose"]["last"]
-    return [{"figure": "angle_deg", "ours": evaluate.pile_angle(*end, D), "theirs": row["angle_deg"],
+    return [{"figure": "angle_deg", "ours": evaluate.pile_angle(*frame(folder, summary["time"])), "theirs": row["angle_deg"],
              "their_sd": row["angle_sd_deg"], "sensor": own["angle_deg"], "sensor_sd": own["sd_deg"]},
-            {"figure": "bulk_density_kg_m3", "ours": density, "theirs": row["bulk_density_kg_m3"], "their_sd": 4.0}], summary
+            column_figure(row, folder)], summary
 
 
 def discharge(options, number, folder):
     row = rows(DATA / "wheat" / "discharge.csv")[number - 1]
-    summary = run_case(options, "wheat_discharge.json", wheat_changes(options, row), folder)
+    summary = run_case(options, "wheat_discharge.json", wheat_changes(options, row, folder), folder)
     with open(folder / "series" / "mass out.csv", encoding="ascii") as lines:
         table = list(csv.DictReader(lines))
     time, mass = (np.array([float(r[name]) for r in table]) for name in ("time_s", "mass_kg"))
@@ -149,11 +186,11 @@ def one(options, kind, number):
     with tempfile.TemporaryDirectory() as scratch:
         words = [str(word) for word in (kind, number, f"seed{options.seed}") if word is not None]
         folder = pathlib.Path(options.keep or scratch) / "-".join(words)
-        make = {"lift": lift, "discharge": discharge, "drum": drum}
+        make = {"lift": lift, "column": column, "liggghts": liggghts, "discharge": discharge, "drum": drum}
         found, summary = start_file(options, kind, folder) if kind in START else make[kind](options, number, folder)
     for figure in found:
         line = {"time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-                "point": kind if kind in START else f"{kind} {number}", "seed": options.seed, "step": summary["time_step"],
+                "point": kind if kind in START else f"{'lift' if kind in ('column', 'liggghts') else kind} {number}", "seed": options.seed, "step": summary["time_step"],
                 "particles": summary["particles"], "git": summary["provenance"]["git"],
                 "command": command_of(options, kind, number), "note": options.note, **figure}
         if options.write:
@@ -184,7 +221,7 @@ def table():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=["lift", "discharge", "drum", *START, "all", "table"])
+    parser.add_argument("kind", choices=["lift", "column", "liggghts", "discharge", "drum", *START, "all", "table"])
     parser.add_argument("number", nargs="?", type=int)
     parser.add_argument("--calx", default=os.environ.get("CALX", str(HERE.parent.parent / "build/release/bin/calx")))
     parser.add_argument("--start", help="start file of penetration and drums")

@@ -14,7 +14,7 @@ namespace {
 
 const char* const summary_text = R"({
  "title": "Canister fill, standard operation", "status": "done", "time": 23.5, "steps": 3884297, "particles": 7500,
- "mass": {"inserted": 2.7285, "inserted_count": 7500, "inside": 2.7285, "inside_count": 7500, "removed": 0.0, "removed_count": 0,
+ "mass": {"inserted": 2.7285, "inserted_particles": 7500, "inside": 2.7285, "inside_particles": 7500, "left": 0.0, "left_particles": 0, "closes": true,
           "requested": 2.7285, "delivered": 2.7285, "regions": {"hopper": 0.5457, "canister": 2.1828}},
  "sensors": {
   "canister mass": {"kind": "mass", "columns": ["mass_kg", "particles_1", "centre_x_m", "centre_y_m", "centre_z_m"], "every": 0.01, "last": {"mass_kg": 2.1828}},

@@ -122,7 +122,7 @@ TEST_CASE("statistics of the dose leave out the first two of many cycles and rep
 TEST_CASE("the mass ledger closes only when counts agree") {
   RunFolder run;
   CHECK(key_figures(run).ledger == KeyFigures::Closed::unknown);
-  run.mass = {{"inserted_count", 100}, {"inside_count", 97}, {"removed_count", 3}};
+  run.mass = {{"inserted_particles", 100}, {"inside_particles", 97}, {"left_particles", 3}};
   CHECK(key_figures(run).ledger == KeyFigures::Closed::yes);
   run.mass[1].value = 96;
   CHECK(key_figures(run).ledger == KeyFigures::Closed::no);

@@ -83,6 +83,9 @@ TEST_CASE("a pile has its profile, flank and sectors; the angle of the last row 
   lab.curve("cone", "sectors", "azimuth_deg", "angle_deg", {-150, 30}, {38, 40.4});
   lab.sensor("low", "angle-of-repose", columns, "30,1,12,96,29\n0.6,,,3,12,");
   lab.curve("low", "profile", "distance_m", "height_m", {-0.05, 0.05}, {-0.1, -0.12});
+  lab.sensor("flat", "angle-of-repose", columns, "0.6,,,3,12,");
+  lab.summary["sensors"]["flat"]["reason"] = "the pile rises 3 grain diameters";
+  lab.curve("flat", "profile", "radius_m", "height_m", {0.001, 0.05}, {0.01, 0.009});
   const std::string page = lab.page();
   CHECK(has(page,
             "Angle of repose 39.2 \xc2\xb1 1.1\xc2\xb0 over 12 sectors and 96 bins. Independent of any fit, from "
@@ -97,6 +100,7 @@ TEST_CASE("a pile has its profile, flank and sectors; the angle of the last row 
   // A pile below 0 is a line, for an area would reach up to 0.
   CHECK(chart_called(page, "low: profile and fitted flank")["series"][0]["style"] == "line");
   CHECK(has(page, "No flank was found that gives an angle."));
+  CHECK(has(page, "No angle: the pile rises 3 grain diameters."));
   // Its curves are not drawn a second time under Pile.
   CHECK(chart_called(page, "cone: sectors").is_null());
   CHECK(chart_called(page, "cone: profile").is_null());

@@ -80,12 +80,29 @@ TEST_CASE("compression: density and CPS against log stress, up and down, repeate
   CHECK(has(page.html, "Largest inertial number 0.0003, below the limit of 0.001"));
 }
 
-TEST_CASE("taps: density against their number, Hausner ratio") {
+TEST_CASE("taps: density against their number from the bed as poured, Hausner ratio") {
   const Page page = page_of("cell-density",
                             "time_s,step_1,stress_Pa,height_m,volume_m3,density_kg_m3,inertial_1\n"
-                            "0,0,nan,nan,nan,nan,nan\n1,1,nan,0.05,1,1000,nan\n2,2,nan,0.04,1,1250,nan\n");
-  CHECK(Page::series(page.chart("bulk density against taps"), "bulk density")["y"] == Json{1000, 1250});
+                            "0,0,nan,nan,nan,nan,nan\n0.5,0,nan,0.05,1,1000,nan\n0.8,0,nan,0.05,1,1000,nan\n"
+                            "1,1,nan,0.05,1,1100,nan\n2,2,nan,0.04,1,1250,nan\n");
+  const Json& line = Page::series(page.chart("bulk density against taps"), "bulk density");
+  CHECK(line["x"] == Json{0, 1, 2});
+  CHECK(line["y"] == Json{1000, 1100, 1250});
+  CHECK(has(page.html, "From 1000 as poured to 1250"));
   CHECK(has(page.html, "Hausner ratio 1.25, Carr index 20\xc2\xa0%"));
+  CHECK(has(page.html, "tapped density</span><span class=\"value\">1250\xc2\xa0kg/m\xc2\xb3</span>"));
+}
+
+TEST_CASE("what a laboratory writes down stands at the head of the page") {
+  const Page angle = page_of("angle-of-repose", "time_s,angle_deg,sd_deg,sectors_1\n1,35.25,1.5,12\n");
+  CHECK(has(angle.html, "angle of repose</span><span class=\"value\">35.2 \xc2\xb1 1.5\xc2\xb0</span>"));
+  const Page none = page_of("angle-of-repose", "time_s,angle_deg,sd_deg,sectors_1\n1,nan,nan,0\n");
+  CHECK(has(none.html, "angle of repose</span><span class=\"value\">none</span>"));
+  const Page press = page_of("cell-density",
+                             "time_s,step_1,stress_Pa,density_kg_m3,cps_percent\n0,0,nan,nan,nan\n"
+                             "1,1,500,1200,0\n2,2,15000,1250,4\n3,3,1000,1230,3\n");
+  CHECK(has(press.html, "compressibility</span><span class=\"value\">4\xc2\xa0%</span>"));
+  CHECK(has(press.html, "<span class=\"note\">test: at 15\xc2\xa0kPa</span>"));
 }
 
 TEST_CASE(

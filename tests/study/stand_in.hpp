@@ -45,6 +45,8 @@ class StandInExecutor : public Executor {
   std::size_t computed = 0;
   /// Runs at friction above this end with an error.
   double fails_above = 1e9;
+  /// Heaps at friction below this are too flat for an angle.
+  double flat_below = 0;
 
   std::vector<RunResult> run(const std::vector<RunRequest>& requests, const ProgressSink&) override {
     std::vector<RunResult> out;
@@ -57,18 +59,19 @@ class StandInExecutor : public Executor {
       std::filesystem::create_directories(result.folder + "/series");
       // A coarser rig is off by a few percent, in a way that depends on the place.
       const bool coarse = q.case_path.find("coarse") != std::string::npos;
-      write(result.folder, at["/f"], at["/r"], q.seed, coarse ? 1.04 + 0.03 * at["/f"] : 1);
+      write(result.folder, at["/f"], at["/r"], q.seed, coarse ? 1.04 + 0.03 * at["/f"] : 1, at["/f"] < flat_below);
       out.push_back(result);
     }
     return out;
   }
 
  private:
-  static void write(const std::string& folder, double f, double r, std::uint64_t seed, double off) {
+  static void write(const std::string& folder, double f, double r, std::uint64_t seed, double off, bool flat) {
     Random random(seed, 5);
+    const std::string angle = format_number(off * (StandIn::angle(f, r) + kAngleScatter * heavy(random)));
     std::ofstream(folder + "/summary.json")
-        << R"({"sensors": {"heap": {"last": {"angle_deg": )"
-        << format_number(off * (StandIn::angle(f, r) + kAngleScatter * heavy(random))) << R"(, "density_kg_m3": )"
+        << R"({"sensors": {"heap": {)" << (flat ? R"("reason": "the pile is flat", )" : "")
+        << R"("last": {"angle_deg": )" << (flat ? "null" : angle) << R"(, "density_kg_m3": )"
         << format_number(off * (StandIn::density(f, r) + kDensityScatter * heavy(random))) << R"(, "height_mm": )"
         << format_number(off * (StandIn::height(f, r) + kHeightScatter * heavy(random))) << "}}}}\n";
     std::ofstream series(folder + "/series/mass out.csv");

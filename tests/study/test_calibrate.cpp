@@ -33,6 +33,19 @@ Study keep(Study study, const std::vector<std::size_t>& numbers) {
 
 }  // namespace
 
+TEST_CASE("runs without a figure are counted, with the reason of the first") {
+  const calx_test::Scratch scratch;
+  StandInExecutor executor(scratch / "runs");
+  executor.flat_below = 0.3;
+  const Calibration c = calibrate(stand_in_study(0.5, 0.2, 11), executor, {});
+  std::size_t flat = 0, all = 0;
+  for (const RunRow& r : c.runs) ++all, flat += r.values[0] < 0.3;
+  REQUIRE(flat > 0);
+  CHECK(says(c, "\"angle\": " + std::to_string(flat) + " of " + std::to_string(all) +
+                    " runs gave no number and are left out; the first: the pile is flat"));
+  CHECK(!says(run(stand_in_study(0.5, 0.2, 11)), "gave no number"));
+}
+
 TEST_CASE("one figure for two parameters: they are told only together") {
   const Calibration c = run(keep(stand_in_study(0.5, 0.2, 11), {1}));
   REQUIRE(c.confounded.size() == 1);

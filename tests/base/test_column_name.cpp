@@ -1,10 +1,8 @@
 #include <doctest/doctest.h>
 
-#include <cmath>
-#include <string>
+#include <utility>
 
-#include "base/error.hpp"
-#include "study/column.hpp"
+#include "base/column_name.hpp"
 
 namespace calx {
 
@@ -26,19 +24,11 @@ TEST_CASE("the unit of a column is what its name ends in") {
                                                        {"angle_degree", ""}};
   for (const auto& c : cases) {
     CAPTURE(c.first);
-    CHECK(column_unit(c.first) == c.second);
+    CHECK(split_column(c.first).unit == c.second);
   }
-}
-
-TEST_CASE("a table is read with its lines, comments and empty cells") {
-  const Table t = parse_table("\xef\xbb\xbf# lab 3\n\"run\", time_s\r\n1,2.5\r\n\n2,\n", "a.csv");
-  CHECK(t.columns == std::vector<std::string>{"run", "time_s"});
-  REQUIRE(t.rows.size() == 2);
-  CHECK(t.rows[0] == std::vector<double>{1, 2.5});
-  CHECK(std::isnan(t.rows[1][1]));
-  CHECK(t.lines == std::vector<std::size_t>{3, 5});
-  CHECK_THROWS_WITH_AS(parse_table("a,b\n1,2,3\n", "a.csv"), "a.csv line 2: holds 3 values; the header names 2 columns",
-                       Error);
+  CHECK(split_column("torque_x_N_m").quantity == "torque_x");
+  CHECK(split_column("height_min_m").quantity == "height_min");
+  CHECK(split_column("kg").quantity == "kg");
 }
 
 }  // namespace calx

@@ -1,13 +1,9 @@
-// column.hpp: columns of series and of measured data: the unit that ends their name, and the numbers of a CSV file.
+// table.hpp: the numbers of a CSV file of series or of measured data.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace calx {
-
-/// The unit a column's name ends in, as units.hpp reads it: "mass_kg" -> "kg", "density_kg_m3" -> "kg/m^3",
-/// "torque_x_N_m" -> "N m", "share_1" -> "1"; empty when it ends in none.
-std::string column_unit(const std::string& column);
 
 /// A table of numbers with a header row. Rows keep the line they stand on, for messages.
 struct Table {
