@@ -44,15 +44,6 @@ std::vector<std::vector<double>> read_samples(const std::string& path, std::size
   return out;
 }
 
-std::string card(const std::string& name, const std::string& value, const std::string& note, const char* mood) {
-  return "<div class=\"card " + std::string(mood) + "\"><span class=\"name\">" + html_text(name) +
-         "</span><span class=\"value\">" + value + "</span><span class=\"note\">" + note + "</span></div>";
-}
-
-std::string check_row(const char* mood, const std::string& what, const std::string& text) {
-  return "<li class=\"" + std::string(mood) + "\"><b>" + what + "</b> " + text + "</li>";
-}
-
 ChartSeries series(const std::string& name, ChartSeries::Style style, std::vector<double> x, std::vector<double> y,
                    int colour = -1, std::vector<double> error = {}) {
   ChartSeries s;
@@ -95,13 +86,13 @@ class CalibrationPage {
                       "</h1><span class=\"status good\">calibrated</span></div><div class=\"cards\">";
     for (const Json& p : c_["parameters"]) {
       const std::string unit = p["unit"], told = p["told"];
-      out += card(p["name"], with_unit(p["mean"], unit) + " \xc2\xb1 " + format_number(p["sd"], 2),
-                  "90 % interval " + format_number(p["q05"], 4) + " to " + with_unit(p["q95"], unit) + "; " + told,
-                  told == "found"    ? "good"
-                  : told == "weakly" ? "main"
-                                     : "bad");
+      out += html_card(html_text(p["name"]), with_unit(p["mean"], unit) + " \xc2\xb1 " + format_number(p["sd"], 2),
+                       "90 % interval " + format_number(p["q05"], 4) + " to " + with_unit(p["q95"], unit) + "; " + told,
+                       told == "found"    ? "good"
+                       : told == "weakly" ? "main"
+                                          : "bad");
     }
-    out += card(
+    out += html_card(
         "runs", format_number(c_["runs"]["spent"]),
         "of " + format_number(c_["runs"]["budget"]) + " planned, " + format_number(c_["runs"]["failed"]) + " failed",
         "");
@@ -115,25 +106,25 @@ class CalibrationPage {
       const std::string name = html_text(p["name"]);
       if (share < 0.5)
         checks +=
-            check_row("good", name + " is found.", "Its spread is " + format_number(share, 2) + " of the prior's.");
+            html_check("good", name + " is found.", "Its spread is " + format_number(share, 2) + " of the prior's.");
       else
-        checks += check_row(share < 0.8 ? "open" : "bad",
-                            name + (share < 0.8 ? " is told weakly." : " is not told by the data."),
-                            "Its spread is still " + format_number(share, 2) +
-                                " of the prior's; another kind of measurement is needed.");
+        checks += html_check(share < 0.8 ? "open" : "bad",
+                             name + (share < 0.8 ? " is told weakly." : " is not told by the data."),
+                             "Its spread is still " + format_number(share, 2) +
+                                 " of the prior's; another kind of measurement is needed.");
     }
     for (const Json& f : c_["confounded"])
-      checks += check_row(
+      checks += html_check(
           "bad", html_text(f["parameters"][0]) + " and " + html_text(f["parameters"][1]) + " are told only together.",
           "Correlation " + format_number(f["correlation"], 2) +
               ": a change of one is made up by the other. A measurement that answers to one of them "
               "alone tells them apart.");
     for (const Json& o : c_["observables"])
-      checks += check_row(o["agrees"] ? "good" : "bad",
-                          html_text(o["name"]) + (o["agrees"] ? " agrees" : " does not agree") +
-                              (o["use"] == "fit" ? "." : " (held out)."),
-                          "Distance " + format_number(o["z"], 2) + " standard deviations.");
-    for (const Json& n : c_["notes"]) checks += check_row("open", "Note:", html_text(n) + ".");
+      checks += html_check(o["agrees"] ? "good" : "bad",
+                           html_text(o["name"]) + (o["agrees"] ? " agrees" : " does not agree") +
+                               (o["use"] == "fit" ? "." : " (held out)."),
+                           "Distance " + format_number(o["z"], 2) + " standard deviations.");
+    for (const Json& n : c_["notes"]) checks += html_check("open", "Note:", html_text(n) + ".");
     std::vector<std::vector<std::string>> rows = {
         {"Parameter", "Where", "Mean", "sd", "5 %", "50 %", "95 %", "Range", "sd / prior sd"}};
     for (const Json& p : c_["parameters"]) {

@@ -31,6 +31,8 @@ const char* style_name(ChartSeries::Style style) {
       return "bars";
     case ChartSeries::Style::area:
       return "area";
+    case ChartSeries::Style::band:
+      return "band";
   }
   return "line";
 }

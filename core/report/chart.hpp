@@ -16,10 +16,10 @@ struct ChartAxis {
 };
 
 struct ChartSeries {
-  enum class Style { line, dashed, points, bars, area } style = Style::line;
+  enum class Style { line, dashed, points, bars, area, band } style = Style::line;
   std::string name;
   std::vector<double> x, y;
-  std::vector<double> error;  // half length of the error bar; empty: none
+  std::vector<double> error;  // half length of the error bar, half width of the band; empty: none
   int colour = -1;            // number in the palette; -1: the next free one
 };
 

@@ -43,6 +43,16 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows, std::s
   return out + (rows.size() > 1 ? "</tbody>" : "") + "</table></div>";
 }
 
+std::string html_card(const std::string& name, const std::string& value, const std::string& note,
+                      const std::string& mood) {
+  return "<div class=\"card " + mood + "\"><span class=\"name\">" + name + "</span><span class=\"value\">" + value +
+         "</span><span class=\"note\">" + note + "</span></div>";
+}
+
+std::string html_check(const std::string& mood, const std::string& what, const std::string& text) {
+  return "<li class=\"" + mood + "\"><b>" + what + "</b> " + text + "</li>";
+}
+
 std::string html_absent(const std::string& why) { return "<p class=\"absent\">" + html_text(why) + "</p>"; }
 
 std::string Page::chart(const Chart& chart) {

@@ -15,6 +15,13 @@ std::string html_text(const std::string& plain);
 std::string html_table(const std::vector<std::vector<std::string>>& rows, std::size_t number_columns_from,
                        const std::string& css_class = "");
 
+/// A figure in a card of the header. name, value, note: HTML. mood: "good", "bad", "main" or "".
+std::string html_card(const std::string& name, const std::string& value, const std::string& note,
+                      const std::string& mood = "");
+
+/// One entry of <ul class="checks">. mood: "good", "bad" or "open"; what, text: HTML.
+std::string html_check(const std::string& mood, const std::string& what, const std::string& text);
+
 /// A sentence that says why something is absent.
 std::string html_absent(const std::string& why);
 

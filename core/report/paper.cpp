@@ -30,10 +30,6 @@ std::string folded(const std::string& summary, const std::vector<std::string>& s
          "</details>";
 }
 
-std::string check(const char* mood, const std::string& head, const std::string& text) {
-  return "<li class=\"" + std::string(mood) + "\"><b>" + head + "</b> " + text + "</li>";
-}
-
 /// Where the mean of a form lies against the measurement, and whether the scatter of seeds is larger than that.
 std::string against_measured(const PaperRow& row, const PaperResult& result) {
   if (result.spread.count == 0) return "";
@@ -48,9 +44,9 @@ std::string scatter_verdict(const PaperRow& row, const PaperResult& result) {
   if (!row.against_scatter || result.spread.count == 0) return "";
   const std::string unit = row.unit == "1" ? "" : "\xc2\xa0" + unit_html(row.unit);
   if (!(result.pooled > 0))
-    return check("open", "Scatter of seeds not known.", "At least two seeds of each run are needed.");
+    return html_check("open", "Scatter of seeds not known.", "At least two seeds of each run are needed.");
   const bool inside = std::fabs(result.spread.mean) <= result.pooled;
-  return check(
+  return html_check(
       inside ? "good" : "bad",
       inside ? "The difference is no larger than between seeds." : "The difference exceeds that between seeds.",
       "Difference of means " + format_number(result.spread.mean, 3) + unit + ", its standard error " +
@@ -64,11 +60,11 @@ std::string claims(const PaperRow& row) {
   for (const PaperClaim& c : row.claims) {
     const std::string said = "\"" + html_text(c.words) + "\" (" + html_text(c.where) + ")";
     if (!own.known || own.sign == c.sign)
-      out += check("good", "The publication's words agree with its numbers:", said + ".");
+      out += html_check("good", "The publication's words agree with its numbers:", said + ".");
     else
-      out += check("bad", "The publication contradicts itself.",
-                   said + " says " + (c.sign < 0 ? "underestimate" : "overestimate") + "; its numbers say " +
-                       difference_html(own, row.measured, row.unit) + ". The numbers are what is compared here.");
+      out += html_check("bad", "The publication contradicts itself.",
+                        said + " says " + (c.sign < 0 ? "underestimate" : "overestimate") + "; its numbers say " +
+                            difference_html(own, row.measured, row.unit) + ". The numbers are what is compared here.");
   }
   return out;
 }
@@ -108,7 +104,7 @@ std::string row_content(Page& page, const PaperRows& rows, const PaperRow& row, 
     checks += scatter_verdict(row, r);
     // A form that nobody began has said so in the table.
     if (r.begun || form == paper_reduced)
-      for (const std::string& m : r.missing) checks += check("open", "", html_text(m) + ".");
+      for (const std::string& m : r.missing) checks += html_check("open", "", html_text(m) + ".");
     for (const RunFolder& folder : r.runs)
       links += (links.empty() ? "Runs: " : ", ") + std::string("<a href=\"") +
                html_text(std::filesystem::path(folder.dir).lexically_relative(out).string()) + "/report.html\">" +
@@ -165,11 +161,6 @@ std::string overview(const PaperRows& rows, const std::vector<RowResults>& resul
          html_table(table, 99);
 }
 
-std::string card(const std::string& name, const std::string& value, const std::string& note) {
-  return "<div class=\"card main\"><span class=\"name\">" + name + "</span><span class=\"value\">" + value +
-         "</span><span class=\"note\">" + note + "</span></div>";
-}
-
 }  // namespace
 
 std::string write_paper(const PaperRows& rows, std::size_t seeds, const std::string& out) {
@@ -186,11 +177,12 @@ std::string write_paper(const PaperRows& rows, std::size_t seeds, const std::str
     }
   Page page(rows.title);
   const auto share = [&](int form) { return std::to_string(filled[form]) + " of " + std::to_string(of[form]); };
-  page.header("<div class=\"title\"><h1>" + html_text(rows.title) + "</h1></div><p class=\"note\">" +
-              html_text(rows.source) + "</p><div class=\"cards\">" +
-              card("rows filled by reduced runs", share(paper_reduced), "what was reduced stands in each row") +
-              card("rows filled by full runs", share(paper_full), "calx paper --full computes them") + "</div>" +
-              (rows.intro.empty() ? "" : "<p>" + html_text(rows.intro) + "</p>"));
+  page.header(
+      "<div class=\"title\"><h1>" + html_text(rows.title) + "</h1></div><p class=\"note\">" + html_text(rows.source) +
+      "</p><div class=\"cards\">" +
+      html_card("rows filled by reduced runs", share(paper_reduced), "what was reduced stands in each row", "main") +
+      html_card("rows filled by full runs", share(paper_full), "calx paper --full computes them", "main") + "</div>" +
+      (rows.intro.empty() ? "" : "<p>" + html_text(rows.intro) + "</p>"));
   page.section("rows", "All rows", "All rows", overview(rows, results));
   for (std::size_t first = 0; first < rows.rows.size();) {
     const std::string& group = rows.rows[first].group;

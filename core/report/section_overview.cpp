@@ -8,19 +8,10 @@
 namespace calx {
 namespace {
 
-std::string card(const std::string& name, const std::string& value, const std::string& note, const char* mood = "") {
-  return "<div class=\"card " + std::string(mood) + "\"><span class=\"name\">" + name +
-         "</span><span class=\"value\">" + value + "</span><span class=\"note\">" + note + "</span></div>";
-}
-
 std::string status_class(const std::string& status) {
   if (status == "done" || status == "finished" || status == "complete") return "good";
   if (status == "running" || status == "interrupted") return "going";
   return status == "unknown" || status == "no summary yet" ? "going" : "bad";
-}
-
-std::string row(const char* mood, const std::string& what, const std::string& text) {
-  return "<li class=\"" + std::string(mood) + "\"><b>" + what + "</b> " + text + "</li>";
 }
 
 std::string percent(double share) { return format_number(100 * share, 3) + "\xc2\xa0%"; }
@@ -47,9 +38,9 @@ std::string step_check(const RunFolder& run) {
   const std::string advice =
       "Advice: " + html_text(binding->name) + (binding->where.empty() ? "" : ", " + html_text(binding->where)) + ".";
   if (run.time_step <= binding->seconds * (1 + 1e-9))
-    return row("good",
-               "Time step " + seconds(run.time_step) + " is within the advised " + seconds(binding->seconds) + ".",
-               advice);
+    return html_check(
+        "good", "Time step " + seconds(run.time_step) + " is within the advised " + seconds(binding->seconds) + ".",
+        advice);
   std::string text = advice;
   double refused = 0;
   for (const StepLimitRow& l : run.limits)
@@ -66,9 +57,9 @@ std::string step_check(const RunFolder& run) {
                  ? ", which the step keeps."
                  : ": the step was above it for such a contact, so compare with a run at that step.");
   if (run.status == "stopped") text += " The run stopped early; a smaller step is the first thing to try.";
-  return row(run.status == "stopped" ? "bad" : "open",
-             "Time step " + seconds(run.time_step) + " is given, above the advised " + seconds(binding->seconds) + ".",
-             text);
+  return html_check(
+      run.status == "stopped" ? "bad" : "open",
+      "Time step " + seconds(run.time_step) + " is given, above the advised " + seconds(binding->seconds) + ".", text);
 }
 
 }  // namespace
@@ -84,40 +75,40 @@ void Sections::header() {
   }
   out += "<div class=\"cards\">";
   if (std::isfinite(figures.filled)) {
-    out += card("mass filled", format_quantity(figures.filled, "kg", 5),
-                figures.fill ? "sensor " + html_text(figures.fill->name) : "sum over cycles", "main");
+    out += html_card("mass filled", format_quantity(figures.filled, "kg", 5),
+                     figures.fill ? "sensor " + html_text(figures.fill->name) : "sum over cycles", "main");
   }
   const CycleFigures& c = figures.cycles;
   if (!c.cycle.empty()) {
     const std::string note = "sd " + format_quantity(c.per_cycle.deviation, "kg", 3) + ", cycles " +
                              format_number(c.first) + " to " + format_number(c.cycle.back());
-    out += card("mass per cycle, mean", format_quantity(c.per_cycle.mean, "kg", 4), note, "main");
+    out += html_card("mass per cycle, mean", format_quantity(c.per_cycle.mean, "kg", 4), note, "main");
   }
   if (run.has_summary) {
-    out += card("simulated time", format_quantity(run.time, "s", 4),
-                run.steps >= 0 ? format_count(run.steps) + " steps" : "");
+    out += html_card("simulated time", format_quantity(run.time, "s", 4),
+                     run.steps >= 0 ? format_count(run.steps) + " steps" : "");
   }
-  if (run.particles >= 0) out += card("particles", format_count(run.particles), "in the world now");
-  if (run.time_step > 0) out += card("time step", format_quantity(run.time_step, "s", 4), "");
+  if (run.particles >= 0) out += html_card("particles", format_count(run.particles), "in the world now");
+  if (run.time_step > 0) out += html_card("time step", format_quantity(run.time_step, "s", 4), "");
   if (run.particle_steps_per_second > 0) {
-    out +=
-        card("speed", format_number(run.particle_steps_per_second / 1e6, 3) + " M",
-             "particle steps per second" + (run.wall_seconds > 0 ? "; wall time " + wall_text(run.wall_seconds) : ""));
+    out += html_card(
+        "speed", format_number(run.particle_steps_per_second / 1e6, 3) + " M",
+        "particle steps per second" + (run.wall_seconds > 0 ? "; wall time " + wall_text(run.wall_seconds) : ""));
   }
   if (std::isfinite(figures.energy_remainder)) {
     const double share = figures.energy_work > 0 ? std::fabs(figures.energy_remainder) / figures.energy_work : 0;
-    out += card("energy remainder", percent(share),
-                format_quantity(figures.energy_remainder, "J", 3) + " of " +
-                    format_quantity(figures.energy_work, "J", 3) + " work done",
-                share > 0.05 ? "bad" : "");
+    out += html_card("energy remainder", percent(share),
+                     format_quantity(figures.energy_remainder, "J", 3) + " of " +
+                         format_quantity(figures.energy_work, "J", 3) + " work done",
+                     share > 0.05 ? "bad" : "");
   }
   const char* closed = figures.ledger == KeyFigures::Closed::yes  ? "yes"
                        : figures.ledger == KeyFigures::Closed::no ? "no"
                                                                   : "not stated";
-  out += card("mass ledger closed", closed, html_text(figures.ledger_text),
-              figures.ledger == KeyFigures::Closed::yes  ? "good"
-              : figures.ledger == KeyFigures::Closed::no ? "bad"
-                                                         : "");
+  out += html_card("mass ledger closed", closed, html_text(figures.ledger_text),
+                   figures.ledger == KeyFigures::Closed::yes  ? "good"
+                   : figures.ledger == KeyFigures::Closed::no ? "bad"
+                                                              : "");
   page.header(out + "</div>");
 }
 
@@ -125,33 +116,34 @@ void Sections::overview() {
   std::string checks = "<ul class=\"checks\">";
   if (figures.ledger != KeyFigures::Closed::unknown) {
     const bool good = figures.ledger == KeyFigures::Closed::yes;
-    checks += row(good ? "good" : "bad", good ? "Mass ledger closes." : "Mass ledger does not close.",
-                  html_text(figures.ledger_text) + ".");
+    checks += html_check(good ? "good" : "bad", good ? "Mass ledger closes." : "Mass ledger does not close.",
+                         html_text(figures.ledger_text) + ".");
   } else {
-    checks += row("open", "Mass ledger not checked.", "Add a sensor of kind mass-ledger.");
+    checks += html_check("open", "Mass ledger not checked.", "Add a sensor of kind mass-ledger.");
   }
   if (std::isfinite(figures.energy_remainder) && figures.energy_work > 0) {
     const double share = std::fabs(figures.energy_remainder) / figures.energy_work;
     // 1 % and 5 %: house rule for "converged in time" and "look at the time step"; the number itself is what counts.
-    checks += row(share <= 0.01   ? "good"
-                  : share <= 0.05 ? "open"
-                                  : "bad",
-                  "Energy remainder " + percent(share) + " of the work done.",
-                  share <= 0.05 ? "What time integration lost or gained."
-                                : "The time step is too large for this stiffness, or the run blew up.");
+    checks += html_check(share <= 0.01   ? "good"
+                         : share <= 0.05 ? "open"
+                                         : "bad",
+                         "Energy remainder " + percent(share) + " of the work done.",
+                         share <= 0.05 ? "What time integration lost or gained."
+                                       : "The time step is too large for this stiffness, or the run blew up.");
   } else {
-    checks += row("open", "Energy not checked.", "Add a sensor of kind energy to see what time integration loses.");
+    checks +=
+        html_check("open", "Energy not checked.", "Add a sensor of kind energy to see what time integration loses.");
   }
   const double requested = value_of(run.mass, "requested", 0), delivered = value_of(run.mass, "delivered", 0);
   if (requested > 0) {
     const bool full = delivered >= 0.999 * requested;
-    checks += row(
+    checks += html_check(
         full ? "good" : "open",
         "Sources delivered " + format_quantity(delivered, "kg", 4) + " of " + format_quantity(requested, "kg", 4) + ".",
         full ? "" : "A source had no room, or the run ended before it was done.");
   }
   checks += step_check(run);
-  for (const std::string& n : run.notes) checks += row("open", "Not complete:", html_text(n) + ".");
+  for (const std::string& n : run.notes) checks += html_check("open", "Not complete:", html_text(n) + ".");
   checks += "</ul>";
 
   std::string assumed = run.assumptions.empty() ? html_absent("The case lists no assumptions.")

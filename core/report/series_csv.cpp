@@ -5,9 +5,8 @@
 #include <limits>
 
 namespace calx {
-namespace {
 
-std::vector<std::string> cells_of(const std::string& line) {
+std::vector<std::string> csv_cells(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
   for (char c : line) {
@@ -22,8 +21,6 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-}  // namespace
-
 SeriesTable parse_series(const std::string& text) {
   SeriesTable out;
   std::size_t at = 0;
@@ -32,7 +29,7 @@ SeriesTable parse_series(const std::string& text) {
     const std::size_t end = text.find('\n', at);
     if (end == std::string::npos && !header) break;  // a row without its line end may lack digits
     const std::vector<std::string> cells =
-        cells_of(text.substr(at, end == std::string::npos ? std::string::npos : end - at));
+        csv_cells(text.substr(at, end == std::string::npos ? std::string::npos : end - at));
     at = end == std::string::npos ? text.size() : end + 1;
     if (header) {
       out.columns.assign(cells.begin() + 1, cells.end());

@@ -21,7 +21,7 @@ struct Named {
   std::string pointer;
   std::map<std::string, std::string> on;
   std::map<std::string, double> shape;
-  double scale = 0;  // 0: that of the manifest
+  std::map<std::string, double> scale;  // by amplitude; none: that of the manifest
   std::vector<std::string> cases;
 };
 
@@ -30,6 +30,26 @@ Json effects_of_case(const std::string& path, const std::vector<std::pair<std::s
   const Document document(read_text_file(path), path, set);
   const auto found = document.root().find("effects");
   return found == document.root().end() ? Json::array() : *found;
+}
+
+/// A typical strength for the only amplitude, or one by name.
+std::map<std::string, double> read_scale(const Node& node, const EffectInfo& info) {
+  std::vector<std::string> amplitudes;
+  for (const EffectParameter& p : info.parameters)
+    if (p.is_amplitude) amplitudes.push_back(p.name);
+  if (!node.json().is_object()) {
+    if (amplitudes.size() > 1)
+      node.fail("effect " + info.id + " has several amplitudes; give {\"" + amplitudes[0] + "\": ...}");
+    return {{amplitudes[0], node.number("1", Allow::above_zero)}};
+  }
+  std::map<std::string, double> out;
+  for (const auto& entry : Object(node, "typical strengths by amplitude").entries()) {
+    if (std::find(amplitudes.begin(), amplitudes.end(), entry.first) == amplitudes.end())
+      entry.second.fail("effect " + info.id + " has no amplitude \"" + entry.first + "\"; " +
+                        did_you_mean(entry.first, amplitudes));
+    out[entry.first] = entry.second.number("1", Allow::above_zero);
+  }
+  return out;
 }
 
 std::map<std::string, Named> read_named(const Study& study, const std::vector<EffectInfo>& effects) {
@@ -60,7 +80,7 @@ std::map<std::string, Named> read_named(const Study& study, const std::vector<Ef
                           did_you_mean(entry.first, shapes));
       n.shape[entry.first] = entry.second.number("1");
     }
-    n.scale = o.number("scale", "1", 0, Allow::not_negative);
+    if (const auto scale = o.find("scale")) n.scale = read_scale(*scale, info);
     n.cases = o.names("cases", "case", cases);
     o.done();
     out[name] = n;
@@ -94,7 +114,7 @@ Candidate make_candidate(const EffectInfo& info, const EffectParameter& p, const
                       : p.sign == EffectParameter::Sign::negative ? below
                       : c.direction.empty()                       ? std::min(above, below)
                                                                   : above;
-  const double wanted = named && named->scale > 0 ? named->scale : p.scale;
+  const double wanted = named && named->scale.count(p.name) ? named->scale.at(p.name) : p.scale;
   c.effect.scale = std::min(wanted, room / step_scales);
   return c;
 }
@@ -215,7 +235,13 @@ Library find_library(const Study& study, double step_scales) {
       c.named = own != nullptr;
       for (const StudyObservable& o : study.observables)
         c.touched += static_cast<std::size_t>(std::count(info.touches.begin(), info.touches.end(), o.kind));
-      const std::string reason = place(study, c, own, step_scales);
+      // Where the case refuses an effect at its usual trial strength, for its time step for instance, less may do.
+      std::string reason;
+      for (const double weaker : {1.0, 0.5, 0.5}) {
+        c.effect.scale *= weaker;
+        reason = place(study, c, own, step_scales);
+        if (reason.empty()) break;
+      }
       if (reason.empty()) {
         out.candidates.push_back(c);
       } else if (own) {

@@ -35,6 +35,8 @@ const std::array<Plan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
                                     {{2, 2, 2}, 1, 1, 3, 1, 1, 2, 2},
                                     {{2, 2}, 0, 0, 0, 0, 0, 2, 2}}};
 constexpr int leaders = 2;
+/// Runs of each full case that carry what the reduced ones say.
+constexpr std::size_t full_runs = 4;
 
 /// Data sets of the self-test per cause and strength, and strengths in scales of the cause.
 constexpr int self_test_studies = 24;
@@ -70,8 +72,7 @@ std::size_t runs_of(const Study& study, const Library& library, const Plan& plan
   runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
   if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
   runs += 2 * (static_cast<std::size_t>((1 + plan.steps) * plan.step_seeds) + plan.confirmed) * cases;
-  // Two runs of each full case carry what the reduced ones say.
-  return runs + 2 * used_cases(study, study.observables, true);
+  return runs + full_runs * used_cases(study, study.observables, true);
 }
 
 /// The richest plan that the budget pays for. Where none does, candidates that the study did not name leave the
@@ -144,7 +145,14 @@ class Diagnoser {
   void learn() {
     d_.ledger.stage = "full cases and those of the data";
     const std::uint64_t first = d_.options.seed * 1000 + 1;
-    simulator_->anchor({first, first + 1}, d_.measured.observables.sd());
+    std::vector<std::uint64_t> seeds;
+    for (std::uint64_t k = 0; k < full_runs; ++k) seeds.push_back(first + k);
+    const Vector carried = simulator_->anchor(seeds, d_.measured.observables.sd());
+    for (std::size_t b = 0; b < d_.measured.observables.blocks.size(); ++b) {
+      infer::Block& block = d_.measured.observables.blocks[b];
+      const double error = carried[d_.measured.observables.first(b)] / block.sd.mean();
+      if (error > 0) block.tolerance = std::hypot(block.tolerance, error);
+    }
     std::vector<infer::Effect> effects;
     for (const Candidate& c : d_.library.candidates) effects.push_back(c.effect);
     d_.model = infer::linearise(d_.measured.observables, effects, *simulator_, d_.options);

@@ -154,6 +154,7 @@ class DiagnosisText {
     if (effect.one_sided || effect.components == 2) low = std::max(low, 0.0);
     low = c.off + c.orientation * low, high = c.off + c.orientation * high;
     if (low > high) std::swap(low, high);
+    low = std::clamp(low, c.lowest, c.highest), high = std::clamp(high, c.lowest, c.highest);
     Json out = Json::array();
     out.push_back({{"name", c.parameter},
                    {"unit", c.unit},

@@ -247,27 +247,28 @@ Vector StudySimulator::instrument(const infer::RunPoint& point) {
   return factor_.cwiseProduct(change);
 }
 
-void StudySimulator::anchor(const std::vector<std::uint64_t>& seeds, const Vector& sd) {
+Vector StudySimulator::anchor(const std::vector<std::uint64_t>& seeds, const Vector& sd) {
   const bool reduced = std::any_of(blocks_.begin(), blocks_.end(),
                                    [&](const Block& b) { return !study_.cases[b.case_number].reduced.empty(); });
   const bool foreign =
       std::any_of(readings_.begin(), readings_.end(), [](const StudyObservable& o) { return !o.simulated.empty(); });
-  if (!reduced && !foreign) return;
+  if (!reduced && !foreign) return Vector::Zero(rows_);
   std::vector<Setting> settings;
   for (const std::uint64_t seed : seeds) settings.push_back({Vector::Zero(parameters()), {}, seed});
-  const auto mean = [&](bool full) {
+  const auto figures_of = [&](bool full) {
     const auto runs = execute(settings, full);
-    Vector sum = Vector::Zero(rows_);
-    for (const auto& r : runs) {
-      const Vector figures = read(r);
-      const std::string why = trouble(r, figures);
+    Matrix out(rows_, static_cast<Eigen::Index>(runs.size()));
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      const Vector figures = read(runs[k]);
+      const std::string why = trouble(runs[k], figures);
       if (!why.empty()) throw Error(Fault::numerics, ledger_.stage + ": " + why);
-      sum += figures / static_cast<double>(runs.size());
+      out.col(static_cast<Eigen::Index>(k)) = figures;
     }
-    return sum;
+    return out;
   };
-  const Vector from = mean(false);
-  Vector to = reduced ? mean(true) : from;
+  const Matrix small = figures_of(false), large = reduced ? figures_of(true) : small;
+  const Vector from = small.rowwise().mean();
+  Vector to = large.rowwise().mean();
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (!readings_[b].simulated.empty())
       to.segment(blocks_[b].first, blocks_[b].size) = vector_of(readings_[b].simulated);
@@ -279,6 +280,17 @@ void StudySimulator::anchor(const std::vector<std::uint64_t>& seeds, const Vecto
       shift_[k] = to[k] - from[k];
   }
   anchored_ = true;
+  // Both means scatter, and what the reduced case is carried by with them.
+  Vector error = Vector::Zero(rows_);
+  const double count = static_cast<double>(seeds.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (!readings_[b].simulated.empty() || study_.cases[blocks_[b].case_number].reduced.empty()) continue;
+    const Matrix rest = ((large.colwise() - to) - factor_.asDiagonal() * Matrix(small.colwise() - from))
+                            .middleRows(blocks_[b].first, blocks_[b].size);
+    const double pooled = std::sqrt(rest.squaredNorm() / ((count - 1) * static_cast<double>(rest.rows())));
+    error.segment(blocks_[b].first, blocks_[b].size).setConstant(pooled / std::sqrt(count));
+  }
+  return error;
 }
 
 }  // namespace calx

@@ -56,8 +56,8 @@ class StudySimulator : public infer::Simulator {
 
   /// Runs of the full cases, or the numbers of another program, at the prior of the parameters decide how numbers of
   /// the reduced cases are carried: by a factor where both are well away from zero, else by a shift. seeds: of the
-  /// runs at the prior.
-  void anchor(const std::vector<std::uint64_t>& seeds, const infer::Vector& sd);
+  /// runs at the prior, two or more. Returns the standard error of what is carried, per number; zero where nothing is.
+  infer::Vector anchor(const std::vector<std::uint64_t>& seeds, const infer::Vector& sd);
   bool has_anchor() const { return anchored_; }
 
   /// Values of the parameters in their units; standardised ones beyond their range end at its border.

@@ -20,6 +20,7 @@
 #include "plugin_commands.hpp"
 #include "progress.hpp"
 #include "report/calibration_page.hpp"
+#include "report/diagnosis_page.hpp"
 #include "report/report.hpp"
 #include "sim/run.hpp"
 
@@ -192,6 +193,10 @@ int main(int argc, char** argv) {
     namespace fs = std::filesystem;
     if (fs::exists(report_folder + "/calibration.json")) {
       std::printf("%s\n", calx::write_calibration_report(report_folder).c_str());
+      return;
+    }
+    if (fs::exists(report_folder + "/diagnosis.json")) {
+      std::printf("%s\n", calx::write_diagnosis_report(report_folder).c_str());
       return;
     }
     if (fs::is_directory(report_folder) && !fs::exists(report_folder + "/case.json") &&

@@ -149,6 +149,18 @@ class Console(CalxTest):
         self.fails(FILES, "empty: holds no run", result=self.calx("report", "empty"))
         self.assertEqual(list((self.dir / "empty").iterdir()), [])
 
+    def test_report_of_a_diagnosis(self):
+        folder = self.dir / "found"
+        folder.mkdir()
+        (folder / "diagnosis.json").write_text('{"verdict": "none", "title": "a valve"}')
+        result = self.calx("report", "found")
+        self.assertEqual((result.code, result.out, result.err), (0, "found/report.html\n", ""))
+        page = (folder / "report.html").read_text()
+        self.assertIn("Nothing is shown to be wrong", page)
+        self.assertNotRegex(page, r'(src|href)="https?://')
+        (folder / "diagnosis.json").write_text('{"verdict": ')
+        self.fails(FILES, "found/diagnosis.json: is no valid JSON", result=self.calx("report", "found"))
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

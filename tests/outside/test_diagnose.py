@@ -138,12 +138,32 @@ class Diagnose(CalxTest):
 
     def test_a_gain_of_the_balance_is_no_fault_of_the_hopper(self):
         self.measure(0, shown=1.12)
-        found, _ = self.diagnose()
+        found, _ = self.diagnose("--budget", 100)
         self.assertEqual(found["verdict"], "named", found["sentence"])
         self.assertEqual(found["causes"][0]["id"], "calx.load-cell-gain")
         self.assertTrue(found["causes"][0]["instrument"])
         strength = found["causes"][0]["parameters"][0]
         self.assertLess(abs(strength["value"] - 0.12), 3 * strength["sd"], strength)
+
+    def test_a_reduced_case_does_the_work_and_the_full_one_confirms(self):
+        self.measure(0.004)
+        coarse = copy.deepcopy(DRAIN)
+        coarse["shapes"]["ball"]["sphere"]["radius"] = 0.0024
+        coarse["domain"]["max"][1] = 0.02
+        coarse["regions"]["hopper"]["box"]["max"][1] = coarse["sources"][0]["region"]["box"]["max"][1] = 0.02
+        self.write(coarse, "coarse.json")
+        study = copy.deepcopy(STUDY)
+        study["cases"]["drain"]["reduced"] = "coarse.json"
+        study["budget"] = {"runs": 70}
+        found, _ = self.diagnose("--no-report", study=study)
+        self.assertEqual((found["verdict"], found["causes"][0]["id"]), ("named", "acme.wide-slot"), found["sentence"])
+        with open(self.dir / "study.out" / "runs.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({r["reduced"] for r in rows if r["stage"].startswith("signatures")}, {"1"})
+        self.assertEqual({r["reduced"] for r in rows if r["stage"].startswith("confirmation")}, {"0"})
+        # Numbers of the reduced case are carried to those of the full one before anything is compared.
+        full = [r for r in rows if r["stage"].startswith("full cases") and r["reduced"] == "0"]
+        self.assertEqual(len(full), 4)
 
     def test_nothing_is_wrong(self):
         self.measure(0)

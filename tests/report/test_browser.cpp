@@ -7,19 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "page_text.hpp"
+#include "report/diagnosis_page.hpp"
 #include "report/report.hpp"
+#include "sample_diagnosis.hpp"
 #include "sample_run.hpp"
 #include "scratch_folder.hpp"
 
 using calx_test::ScratchFolder;
+using calx_test::slurp;
 
 namespace {
-
-std::string slurp(const std::string& path) {
-  std::ostringstream all;
-  all << std::ifstream(path).rdbuf();
-  return all.str();
-}
 
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
@@ -87,6 +85,19 @@ TEST_CASE("every chart and picture is drawn and the console stays empty") {
   // A blank picture of this size compresses to a few kB.
   const std::size_t picture = seen.dom.find("<img src=\"data:image/png;base64,");
   CHECK(seen.dom.find('"', picture + 12) - picture > 20000);
+}
+
+TEST_CASE("every chart of a diagnosis is drawn, with its bands") {
+  if (browser().empty()) return;
+  const ScratchFolder folder;
+  calx_test::write_sample_diagnosis(folder.path(), calx_test::sample_diagnosis());
+  const Visit seen = visit(calx::write_diagnosis_report(folder.path()), folder.path());
+  for (const std::string& line : seen.complaints) FAIL_CHECK(line);
+  // Two residual plots, the single value, the held-out curve, the calibration curve.
+  CHECK(count(seen.dom, "class=\"plot\" data-chart=") == 5);
+  CHECK(count(seen.dom, "<div class=\"tip\"") == 5);
+  // One in each but the calibration curve.
+  CHECK(count(seen.dom, "opacity=\"0.16\"") == 4);
 }
 
 TEST_CASE("the playback's controls work") {

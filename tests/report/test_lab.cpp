@@ -5,26 +5,20 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
+#include "page_text.hpp"
 #include "report/report.hpp"
 #include "scratch_folder.hpp"
 
 using namespace calx;
+using calx_test::has;
 using calx_test::ScratchFolder;
+using calx_test::slurp;
 
 namespace {
 
 using Json = nlohmann::json;
-
-std::string slurp(const std::string& path) {
-  std::ostringstream all;
-  all << std::ifstream(path).rdbuf();
-  return all.str();
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 struct Page {
   std::string html;

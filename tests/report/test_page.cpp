@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "page_text.hpp"
 #include "report/playback.hpp"
 #include "report/report.hpp"
 #include "report/section_picture.hpp"
@@ -18,23 +19,12 @@
 #include "scratch_folder.hpp"
 
 using namespace calx;
+using calx_test::charts_of;
+using calx_test::has;
 using calx_test::ScratchFolder;
+using calx_test::slurp;
 
 namespace {
-
-std::string slurp(const std::string& path) {
-  std::ostringstream all;
-  all << std::ifstream(path).rdbuf();
-  return all.str();
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-nlohmann::json charts_of(const std::string& page) {
-  const std::string open = "id=\"charts\">";
-  const std::size_t from = page.find(open) + open.size();
-  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
-}
 
 std::vector<unsigned char> decode(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

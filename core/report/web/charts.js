@@ -37,7 +37,7 @@
     var box = document.createElement("div");
     box.className = "legend";
     box.innerHTML = spec.series.map(function (s, i) {
-      return "<span><i style=\"background:" + colourOf(s, i) + "\"></i>" + text(s.name) + "</span>";
+      return "<span><i" + (s.style === "points" ? " class=\"dot\"" : "") + " style=\"background:" + colourOf(s, i) + "\"></i>" + text(s.name) + "</span>";
     }).join("");
     node.insertBefore(box, node.firstChild);
   }
@@ -170,15 +170,20 @@
           .attr("width", wide).attr("y", function (k) { return Math.min(py(k), y(0)); })
           .attr("height", function (k) { return Math.abs(py(k) - y(0)); }).attr("fill", colour).attr("opacity", 0.85).attr("rx", 1.5);
       } else if (s.style === "points") {
+        var many = rows.length > 25;
         if (s.error) {
           g.selectAll("path.error" + i).data(rows.filter(ok)).enter().append("path").attr("stroke", colour).attr("stroke-width", 1.6).attr("d", function (k) {
-            var a = y(s.y[k] - s.error[k]), b = y(s.y[k] + s.error[k]), c = px(k);
-            return "M" + (c - 7) + " " + a + "h14M" + c + " " + a + "V" + b + "M" + (c - 7) + " " + b + "h14";
+            var a = y(s.y[k] - s.error[k]), b = y(s.y[k] + s.error[k]), c = px(k), cap = many ? 2 : 7;
+            return "M" + (c - cap) + " " + a + "h" + 2 * cap + "M" + c + " " + a + "V" + b + "M" + (c - cap) + " " + b + "h" + 2 * cap;
           });
         }
         g.selectAll("circle.p" + i).data(rows.filter(ok)).enter().append("circle").attr("cx", px).attr("cy", py)
-          .attr("r", s.error ? 5 : 3.2).attr("fill", colour);
+          .attr("r", s.error && !many ? 5 : 3.2).attr("fill", colour);
       } else {
+        if (s.style === "band") {
+          g.append("path").datum(rows).attr("fill", colour).attr("opacity", 0.16).attr("d", d3.svg.area().defined(ok).x(px)
+            .y0(function (k) { return y(s.y[k] - s.error[k]); }).y1(function (k) { return y(s.y[k] + s.error[k]); }));
+        }
         if (s.style === "area") {
           g.append("path").datum(rows).attr("fill", colour).attr("opacity", 0.16)
             .attr("d", d3.svg.area().defined(ok).x(px).y0(Math.max(0, Math.min(f.h, y(0)))).y1(py));
@@ -274,7 +279,7 @@
       }).join("");
       if (lead === null) return;
       cursor.style("display", null).attr("x1", x(lead)).attr("x2", x(lead));
-      var head = spec.x.categories ? spec.x.categories[lead] : spec.x.title + " " + number(lead) + " " + spec.x.unit;
+      var head = spec.x.categories ? spec.x.categories[Math.round(lead)] : spec.x.title + " " + number(lead) + " " + spec.x.unit;
       tip.show(text(head) + body, at[0] + margin.left, at[1] + margin.top + offset());
     }).on("mouseleave.tip", function () { tip.hide(); cursor.style("display", "none"); })
       .on("dblclick", function () { x.domain(whole); redraw(); });
