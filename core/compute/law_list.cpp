@@ -1,10 +1,14 @@
 // law_list.cpp: runs a block of contacts through the laws of a list.
 #include "compute/law_list.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <new>
 #include <type_traits>
+
+#include "base/error.hpp"
 
 namespace calx {
 
@@ -19,7 +23,40 @@ void evaluate(const LawTerm& term, calx_block_f32& block) {
   term.table->eval_f32(&block);
 }
 
+/// Rows that do not touch: history of a term that does not survive separation is as new.
+template <class Real>
+void renew_apart(const LawList& list, const LawTerm& term, BlockScratchOf<Real>& scratch) {
+  const Real* overlap = scratch.in(CALX_IN_OVERLAP);
+  for (std::uint32_t h = term.state_offset; h < term.state_offset + term.table->state_count; ++h) {
+    if (list.keep[h]) continue;
+    Real* state = scratch.state(h);
+    const Real preset = static_cast<Real>(list.preset[h]);
+    for (std::uint32_t i = 0; i < scratch.count; ++i) state[i] = overlap[i] > 0 ? state[i] : preset;
+  }
+}
+
+/// Rows that do not touch: a select, so that no NaN escapes from them.
+template <class Real>
+void drop_apart(BlockScratchOf<Real>& scratch, Real* const* out, int outputs) {
+  const Real* overlap = scratch.in(CALX_IN_OVERLAP);
+  for (int k = 0; k < outputs; ++k)
+    for (std::uint32_t i = 0; i < scratch.count; ++i) out[k][i] = overlap[i] > 0 ? out[k][i] : Real(0);
+}
+
 }  // namespace
+
+double reach_of(const LawList& list, double r_i, double r_j) {
+  double largest = 0;
+  for (const LawTerm& term : list.terms) {
+    if (!term.table->reach) continue;
+    const double gap = term.table->reach(term.pair_row.data(), r_i, r_j);
+    if (!(gap >= 0 && std::isfinite(gap)))
+      throw Error(Fault::plugin, list.label + ": the reach of law " + term.id + " is " + std::to_string(gap) +
+                                     " m; 0 or more is needed");
+    largest = std::max(largest, gap);
+  }
+  return largest;
+}
 
 template <class Real>
 BlockScratchOf<Real>::BlockScratchOf(std::uint32_t state_columns) {
@@ -60,7 +97,12 @@ void evaluate_block(const LawList& list, BlockScratchOf<Real>& scratch, double d
                                  scratch.out(1)[i] * scratch.in(CALX_IN_NY)[i] +
                                  scratch.out(2)[i] * scratch.in(CALX_IN_NZ)[i];
     }
+    if (list.reaches) renew_apart(list, term, scratch);
     evaluate(term, block);
+    if (list.reaches) {
+      renew_apart(list, term, scratch);
+      if (!term.table->reach) drop_apart(scratch, block.out, outputs);
+    }
     if (t == 0) continue;
     for (int k = 0; k < outputs; ++k) {
       Real* sum = scratch.out(k);

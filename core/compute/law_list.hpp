@@ -32,10 +32,16 @@ struct LawList {
   std::vector<LawTerm> terms;
   std::uint32_t needs = 0;
   std::uint32_t state_count = 0;
-  std::string label;              // "calcine-steel", for messages
-  std::vector<double> preset;     // per history column
-  std::vector<std::uint8_t> odd;  // per history column: changes sign when i and j trade places
+  std::string label;               // "calcine-steel", for messages
+  std::vector<double> preset;      // per history column
+  std::vector<std::uint8_t> odd;   // per history column: changes sign when i and j trade places
+  bool reaches = false;            // some term acts between surfaces that do not touch
+  std::vector<std::uint8_t> keep;  // per history column of such a list: survives separation
 };
+
+/// Largest gap at which a term of the list acts, m; 0: only while touching. r_j = 0: a wall. Throws
+/// Error(Fault::plugin) for a reach below 0 or not finite. [main]
+double reach_of(const LawList& list, double r_i, double r_j);
 
 /// Work space of one thread for one block; about 200 kB with 32 history columns of double. Real: double or float.
 template <class Real>
@@ -57,7 +63,8 @@ struct BlockScratchOf {
 using BlockScratch = BlockScratchOf<double>;
 
 /// Evaluates scratch.count rows: reads in and state, writes out (0..5, and 6..9 when energy) and state. The law's text
-/// in the precision of Real runs. [worker]
+/// in the precision of Real runs. In a row of a list that reaches whose overlap is not above 0, terms without reach do
+/// nothing, and history that does not survive separation is as new before and after. [worker]
 template <class Real>
 void evaluate_block(const LawList& list, BlockScratchOf<Real>& scratch, double dt, double time, bool energy);
 

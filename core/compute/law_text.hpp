@@ -15,6 +15,7 @@ struct LawProgram {
   std::string text;                   // the function CALX_ID(calx_contact_laws), in the precision of the laws before it
   std::vector<double> numbers;        // pair rows and presets that it reads
   std::vector<std::uint32_t> law_of;  // per ordered material pair: number of its list, kNoLaw where there is none
+  bool reaches = false;               // some list acts between surfaces that do not touch
   static constexpr std::uint32_t kNoLaw = 0xFFFFFFFFu;
 };
 

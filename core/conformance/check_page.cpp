@@ -79,7 +79,13 @@ std::string check_text(const CheckReport& report, bool all) {
       if (!result.detail.empty()) out += "           " + result.detail + "\n";
     }
   }
-  return out + totals(report) + "\n";
+  // Once more where the eye rests: between dozens of passed checks a failed one is overlooked.
+  if (all)
+    for (const CheckedManifest& manifest : report.manifests)
+      for (const CheckResult& result : manifest.results)
+        if (result.outcome == CheckOutcome::failed)
+          out += "\nfailed: " + result.name + " of " + result.subject + "\n  " + result.detail + "\n";
+  return out + "\n" + totals(report) + "\n";
 }
 
 std::string check_json(const CheckReport& report) {

@@ -61,11 +61,13 @@ void write_check_page(const CheckReport& report, const std::string& file);
 /// all_well: nothing was refused. path as for check_plugins; a file that has no manifest is explained, too.
 std::string plugin_doctor_text(const std::string& path, bool& all_well);
 
-/// Writes a project into folder/NAME, from the templates installed with Calx. kind: contact-law, geometry, motion,
-/// particle-force or sensor. Returns the files written. Throws Error(Fault::usage) for a name or kind that cannot be,
-/// Error(Fault::files) where something of that name is there already or the templates are missing.
+/// Writes a project into folder/NAME, from the templates installed with Calx. kind: one of new_plugin_kinds. Returns
+/// the files written. Throws Error(Fault::usage) for a name or kind that cannot be, Error(Fault::files) where something
+/// of that name is there already or the templates are missing.
 std::vector<std::string> new_plugin(const std::string& name, const std::string& kind, const std::string& folder);
-/// Kinds of new_plugin.
+/// The commands that build, check and run such a project, for people.
+std::string new_plugin_advice(const std::string& name, const std::string& kind, const std::string& folder);
+/// Kinds of new_plugin: those of the ABI, and a law that is a text alone.
 std::vector<std::string> new_plugin_kinds();
 
 }  // namespace calx

@@ -27,7 +27,11 @@ struct Worn {
 };
 Worn worn(Subject& s, const LawRig& rig, std::size_t count) {
   Worn out{rig.contacts(s, count), rig.fresh(count)};
-  for (int k = 0; k < 5; ++k) out.state = rig.evaluate<double>(out.rows, out.state).state;
+  // What is apart now has touched before.
+  std::vector<Contact> before = out.rows;
+  for (Contact& row : before) row.in[CALX_IN_OVERLAP] = std::fabs(row.in[CALX_IN_OVERLAP]);
+  for (int k = 0; k < 4; ++k) out.state = rig.evaluate<double>(before, out.state).state;
+  out.state = rig.evaluate<double>(out.rows, out.state).state;
   return out;
 }
 
@@ -255,11 +259,11 @@ std::string no_time(Subject& s) {
 /// the energy put into it.
 double created(Subject& s, const LawRig& rig, bool roll) {
   constexpr int kLegs = 5, kSteps = 2000;
-  const double d = rig.overlap(), dt = rig.dt();
+  const double d = rig.overlap(), dt = rig.dt(), gap = 1.05 * rig.reach();
   struct Corner {
     double overlap, x, y, turn_x, turn_y;
   };
-  std::vector<Corner> corners = {{0, 0, 0, 0, 0}};
+  std::vector<Corner> corners = {{-gap, 0, 0, 0, 0}};
   for (int k = 1; k < kLegs; ++k) {
     Corner c = {d * s.uniform(0.1, 1), d * s.uniform(-0.2, 0.2), d * s.uniform(-0.2, 0.2), 0, 0};
     if (roll) {
@@ -268,7 +272,7 @@ double created(Subject& s, const LawRig& rig, bool roll) {
     }
     corners.push_back(c);
   }
-  corners.push_back({0, corners.back().x, corners.back().y, corners.back().turn_x, corners.back().turn_y});
+  corners.push_back({-gap, corners.back().x, corners.back().y, corners.back().turn_x, corners.back().turn_y});
   std::vector<double> state = rig.fresh(1);
   LawRig::Wrench before;
   double sum = 0, put_in = 0;
@@ -279,8 +283,9 @@ double created(Subject& s, const LawRig& rig, bool roll) {
     for (int n = 1; n <= kSteps; ++n) {
       const double overlap = a.overlap + press * n;
       LawRig::Wrench now;
-      // Contacts that do not overlap are not evaluated.
-      if (overlap > 1e-12 * d) now = rig.at(overlap, {x / dt, y / dt, -press / dt}, {wx / dt, wy / dt, 0}, state, dt);
+      // Contacts that do not overlap are evaluated for laws that reach only.
+      if (gap > 0 || overlap > 1e-12 * d)
+        now = rig.at(overlap, {x / dt, y / dt, -press / dt}, {wx / dt, wy / dt, 0}, state, dt);
       const Vec3 f = 0.5 * (now.force + before.force), m = 0.5 * (now.moment + before.moment);
       const double work = f.z * press - f.x * x - f.y * y - m.x * wx - m.y * wy;
       sum += work;
@@ -315,12 +320,18 @@ std::string stable_step(Subject& s) {
   for (const LawRig& rig : all) {
     if (!rig.table().stable_dt) throw Skipped{"it states no stable step; runs then rely on the Rayleigh limit"};
     const double m = 0.5 * rig.mass();
-    const LawRig::Impact fine = rig.impact(LawRig::speed, rig.dt());
-    const double dt = rig.table().stable_dt(rig.pair().data(), m, 0.5 * LawRig::radius, fine.overlap);
+    // A term that does not push stands beside a spring that a hundredth of the radius stops; inverse squares add.
+    std::vector<double> state = rig.fresh(1);
+    const bool pushes = rig.at(rig.overlap(), {}, {}, state, rig.dt()).force.z > 0;
+    const double spring = pushes ? 0 : m * std::pow(LawRig::speed / (0.01 * LawRig::radius), 2);
+    const double longest = pushes ? 1 : 0.02;  // s; such a term may hold the spheres for ever
+    const LawRig::Impact fine = rig.impact(LawRig::speed, rig.dt(), 0.5, longest, spring);
+    double dt = rig.table().stable_dt(rig.pair().data(), m, 0.5 * LawRig::radius, fine.overlap);
     if (std::isinf(dt)) continue;
     require(dt > 0, rig.name() + ": its stable step is " + short_number(dt) + " s");
+    if (!pushes) dt = 1 / std::sqrt(1 / (dt * dt) + spring / (0.04 * m));
     for (int phase = 0; phase < 16; ++phase) {
-      const LawRig::Impact impact = rig.impact(LawRig::speed, dt, phase / 16.0);
+      const LawRig::Impact impact = rig.impact(LawRig::speed, dt, phase / 16.0, longest, spring);
       worst = std::max(worst, impact.restitution);
       // Measured: an undamped linear spring at a tenth of its period, 0.63 sqrt(m / k), parts with up to 1.016 of the
       // speed, depending on where in the step it is met; at 1.9 sqrt(m / k), near the limit of 2, with 2.6.
@@ -345,6 +356,7 @@ std::string reach(Subject& s) {
         row.in[CALX_IN_OVERLAP] = -gap * 1.0001 - 1e-12;
         row.in[CALX_IN_R_I] = ri;
         row.in[CALX_IN_R_J] = LawRig::radius;
+        row.in[CALX_IN_R_EFF] = ri * LawRig::radius / (ri + LawRig::radius);
       }
       std::vector<double> state = worn(s, rig, 64).state;
       const Evaluated e = rig.evaluate<double>(rows, state);
@@ -352,6 +364,16 @@ std::string reach(Subject& s) {
         for (std::size_t c = 0; c < 6; ++c)
           require(e.out[r * CALX_OUT_COUNT + c] == 0,
                   rig.name() + ": a wrench beyond its reach of " + short_number(gap) + " m");
+      const std::vector<double> fresh = rig.fresh(rows.size());
+      for (std::size_t k = 0; k < fresh.size(); ++k) {
+        const calx_field& column = rig.table().state[k % rig.table().state_count];
+        require(!(column.flags & CALX_FIELD_KEEP_APART) || e.state[k] == fresh[k],
+                rig.name() + ": beyond its reach of " + short_number(gap) + " m history \"" + column.name +
+                    "\" is not that of a new contact");
+      }
+      const double wider = rig.law().reach(rig.pair(), 1.5 * ri, LawRig::radius);
+      require(wider >= gap, rig.name() + ": its reach falls from " + short_number(gap) + " to " + short_number(wider) +
+                                " m when a radius grows");
     }
   }
   if (!any) throw Skipped{"it acts only while touching"};
@@ -464,7 +486,7 @@ std::vector<Check> law_checks() {
           {"no-time", "With dt = 0 history is only carried into the contact plane.", kind, true, no_time},
           {"energy", "A closed path of pressing, shearing and rolling creates no energy.", kind, true, energy},
           {"stable-step", "At its stated stable step an impact of two spheres is stable.", kind, false, stable_step},
-          {"reach", "Beyond its reach there is no wrench.", kind, true, reach},
+          {"reach", "Beyond its reach there is no wrench and history is new.", kind, true, reach},
           {"in-a-list", "Alone and beside a term of no force it gives the same numbers.", kind, true, in_a_list},
           {"law-threads", "16 threads at once get the bits of one.", kind, true, threads},
           {"throughput", "Time a contact, for information.", kind, false, throughput}};

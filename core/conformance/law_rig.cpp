@@ -119,6 +119,7 @@ std::vector<double> LawRig::fresh(std::size_t rows) const {
 
 std::vector<Contact> LawRig::contacts(Subject& s, std::size_t count) const {
   std::vector<Contact> rows(count);
+  std::size_t number = 0;
   for (Contact& row : rows) {
     Vec3 n{s.uniform(-1, 1), s.uniform(-1, 1), s.uniform(-1, 1)};
     n = n / norm(n);
@@ -140,6 +141,8 @@ std::vector<Contact> LawRig::contacts(Subject& s, std::size_t count) const {
                                       rj,
                                       0};
     std::memcpy(row.in, in, sizeof in);
+    if (law_.acts_apart() && number++ % 3 == 0)
+      row.in[CALX_IN_OVERLAP] = -s.uniform(0, 1.2) * law_.reach(pair_, ri, rj);
   }
   return rows;
 }
@@ -217,17 +220,17 @@ LawRig::Wrench LawRig::at(double overlap, const Vec3& v, const Vec3& w, std::vec
   return {{out[0], out[1], out[2]}, {out[3], out[4], out[5]}};
 }
 
-LawRig::Impact LawRig::impact(double v0, double dt, double phase, double longest) const {
+LawRig::Impact LawRig::impact(double v0, double dt, double phase, double longest, double spring) const {
   Impact result;
   std::vector<double> state = fresh(1);
-  const double m = 0.5 * mass();
+  const double m = 0.5 * mass(), gap = reach();
   double v = -v0;               // m/s, along the normal
   double d = -phase * v0 * dt;  // m, overlap; a share of a step before touching
   bool touched = false;
   for (double t = 0; t < longest; t += dt) {
     double force = 0;
-    if (d > 0) {
-      force = at(d, {0, 0, v}, {}, state, dt).force.z;
+    if (d > 0 || (touched && d > -gap)) {
+      force = at(d, {0, 0, v}, {}, state, dt).force.z + spring * std::max(d, 0.0);
       touched = true;
       result.time += dt;
     } else if (touched) {

@@ -33,10 +33,13 @@ class LawRig {
   static constexpr double radius = 1e-3, speed = 0.1;
   double mass() const { return 4.0 / 3.0 * 3.14159265358979324 * radius * radius * radius * 2500; }
   double overlap() const { return overlap_; }
+  /// Gap up to which the law acts between two spheres of that radius, m; 0: only while touching.
+  double reach() const { return law_.reach(pair_, radius, radius); }
   double dt() const { return dt_; }
 
   std::vector<double> fresh(std::size_t rows) const;
-  /// Contacts of unlike spheres and of spheres with walls, with the velocities of a shaken bed.
+  /// Contacts of unlike spheres and of spheres with walls, with the velocities of a shaken bed. Of a law that reaches
+  /// every third does not touch.
   std::vector<Contact> contacts(Subject& subject, std::size_t count) const;
 
   struct Block {
@@ -60,10 +63,11 @@ class LawRig {
   Wrench at(double overlap, const Vec3& velocity, const Vec3& spin, std::vector<double>& state, double dt) const;
 
   /// Head-on impact of two spheres: speed after over speed before; below 0 where they stay together for `longest` s.
+  /// spring: N/m, of a spring beside the law, for a term that does not push.
   struct Impact {
     double restitution = -1, overlap = 0, force = 0, time = 0;
   };
-  Impact impact(double speed, double dt, double phase = 0.5, double longest = 1) const;
+  Impact impact(double speed, double dt, double phase = 0.5, double longest = 1, double spring = 0) const;
 
  private:
   void find_scales();

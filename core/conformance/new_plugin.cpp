@@ -36,16 +36,42 @@ std::string renamed(const std::string& text, const std::string& name) {
                   name);
 }
 
+/// Where Calx is installed, or its build tree.
+fs::path prefix() {
+  std::error_code bad;
+  return fs::read_symlink("/proc/self/exe", bad).parent_path().parent_path();
+}
+
 /// In an installation and in a build tree the templates lie at the same place beside the program.
 fs::path template_folder(const std::string& kind) {
   std::error_code bad;
-  const fs::path program = fs::read_symlink("/proc/self/exe", bad);
-  const fs::path folder = program.parent_path() / ".." / "share" / "calx" / "template" / kind;
+  const fs::path folder = prefix() / "share" / "calx" / "template" / kind;
   if (!fs::is_directory(folder, bad))
-    throw Error(Fault::files, folder.lexically_normal().string() +
+    throw Error(Fault::files, folder.string() +
                                   ": the templates of plugins are not there; they are installed with Calx, "
                                   "cmake --install BUILD --component abi");
   return folder;
+}
+
+constexpr const char* kTextKind = "contact-law-text";
+
+/// Files that a project of one kind takes from the template of another: a law without native code the text and the case
+/// of one that has it, others what builds them.
+std::pair<const char*, std::vector<const char*>> shared_files(const std::string& kind) {
+  if (kind == kTextKind) return {"contact-law", {"my_plugin.law.h", "try.json"}};
+  if (kind == "particle-force") return {"contact-law", {"CMakeLists.txt"}};
+  if (kind == "contact-law" || kind == "motion") return {};
+  return {"motion", {"CMakeLists.txt"}};
+}
+
+std::vector<fs::path> template_files(const std::string& kind) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(template_folder(kind))) files.push_back(entry.path());
+  const auto [owner, shared] = shared_files(kind);
+  for (const char* file : shared) files.push_back(template_folder(owner) / file);
+  std::sort(files.begin(), files.end(),
+            [](const fs::path& a, const fs::path& b) { return a.filename() < b.filename(); });
+  return files;
 }
 
 void check_name(const std::string& name) {
@@ -61,7 +87,7 @@ void check_name(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> new_plugin_kinds() {
-  return {"contact-law", "geometry", "motion", "particle-force", "sensor"};
+  return {"contact-law", kTextKind, "geometry", "motion", "servo", "particle-force", "sensor"};
 }
 
 std::vector<std::string> new_plugin(const std::string& name, const std::string& kind, const std::string& folder) {
@@ -76,9 +102,7 @@ std::vector<std::string> new_plugin(const std::string& name, const std::string& 
     throw Error(Fault::files,
                 project.string() + " is there already and is left as it is; take another name, or remove it");
 
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(template_folder(kind))) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  const std::vector<fs::path> files = template_files(kind);
   if (!fs::create_directory(project, bad)) throw Error(Fault::files, project.string() + ": " + bad.message());
   std::vector<std::string> written;
   for (const fs::path& file : files) {
@@ -91,6 +115,17 @@ std::vector<std::string> new_plugin(const std::string& name, const std::string& 
     written.push_back(to.string());
   }
   return written;
+}
+
+std::string new_plugin_advice(const std::string& name, const std::string& kind, const std::string& folder) {
+  const std::string enter = "  cd " + (fs::path(folder) / name).lexically_normal().string() + "\n";
+  if (kind == kTextKind) return "\nnext:\n" + enter + "  calx plugin check .\n  calx run try.json\n";
+  std::error_code bad;
+  const bool installed = fs::exists(prefix() / "lib" / "cmake" / "CalxAbi", bad);
+  return "\nnext:\n" + enter +
+         "  cmake -S . -B build -DCMAKE_PREFIX_PATH=" + (installed ? prefix().string() : "<where Calx is installed>") +
+         "\n  cmake --build build && ctest --test-dir build --output-on-failure\n"
+         "  calx run try.json --plugin-path build/plugins\n";
 }
 
 }  // namespace calx

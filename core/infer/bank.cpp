@@ -56,16 +56,19 @@ class Beside {
 
 }  // namespace
 
-Bank make_bank(const Observables& observables) {
+Bank make_bank(const Observables& observables, const Vector& base) {
   Bank bank;
   std::vector<double> log_members;  // of the family of each term
   std::vector<bool> sudden;
   double sudden_families = 0, other_families = 0;
   for (std::size_t b = 0; b < observables.blocks.size(); ++b) {
-    const std::vector<Term> terms = terms_of(observables, b);
+    const Vector own = base.size() == 0 ? base : Vector(base.segment(observables.first(b), observables.size(b)));
+    const std::vector<Term> terms = terms_of(observables, b, own);
     for (std::size_t k = 0; k < terms.size();) {
       std::size_t end = k;
-      while (end < terms.size() && terms[end].family == terms[k].family) ++end;
+      while (end < terms.size() && terms[end].family == terms[k].family &&
+             terms[end].sums.rows() == terms[k].sums.rows())
+        ++end;
       const std::string& family = terms[k].family;
       const bool is_sudden =
           observables.blocks[b].ordered && (family == "step" || family == "sawtooth" || family == "periodic");
@@ -85,9 +88,22 @@ Bank make_bank(const Observables& observables) {
   return bank;
 }
 
+Matrix columns_of(const Term& term, const Observables& observables) {
+  Matrix all = Matrix::Zero(observables.rows(), term.columns.cols());
+  all.middleRows(observables.first(term.block), term.columns.rows()) = term.columns;
+  if (term.sums.rows() > 0) all.middleRows(observables.first(term.sums_block), term.sums.rows()) = term.sums;
+  return all;
+}
+
+Matrix whiten_term(const Term& term, const Observables& observables, const Metric& metric) {
+  Matrix w = metric.whiten_rows(term.columns, observables.first(term.block));
+  if (term.sums.rows() > 0) w += metric.whiten_rows(term.sums, observables.first(term.sums_block));
+  return w;
+}
+
 std::vector<Matrix> whiten_bank(const Bank& bank, const Observables& observables, const Metric& metric) {
   std::vector<Matrix> out;
-  for (const Term& term : bank.terms) out.push_back(metric.whiten_rows(term.columns, observables.first(term.block)));
+  for (const Term& term : bank.terms) out.push_back(whiten_term(term, observables, metric));
   return out;
 }
 

@@ -13,7 +13,8 @@ struct Bank {
   std::vector<double> log_share;  // of each term in the prior; sums to one over the bank
 };
 
-Bank make_bank(const Observables& observables);
+/// base: the observables as simulated (LinearModel::base), for curves displaced along their index; empty: none of them.
+Bank make_bank(const Observables& observables, const Vector& base = {});
 
 struct UnknownFit {
   double odds = 0;                  // log, against "no discrepancy"
@@ -22,6 +23,9 @@ struct UnknownFit {
   std::vector<double> block_share;  // posterior share of each block among single discrepancies
 };
 
+/// Columns of a term, all rows: in its own block and, where it adds up, in that of running sums.
+Matrix columns_of(const Term& term, const Observables& observables);
+Matrix whiten_term(const Term& term, const Observables& observables, const Metric& metric);
 /// Whitened columns of the bank's terms.
 std::vector<Matrix> whiten_bank(const Bank& bank, const Observables& observables, const Metric& metric);
 

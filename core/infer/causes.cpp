@@ -22,8 +22,30 @@ double log_prior(double amplitude, double scale, bool one_sided) {
   return std::log(std::max(sum, 1e-300) / prior_scales.size() / std::sqrt(2 * pi) * (one_sided ? 2 : 1));
 }
 
-/// With one tolerance of the shape.
-SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_sided, const Vector& r) {
+/// A stretch of amplitudes with its share of the posterior, not normalised; evidence and prior share count.
+struct Cell {
+  double from, size, log_weight;
+};
+
+/// 5 % and 95 % points of cells that may overlap.
+void set_interval(std::vector<Cell> cells, SingleFit& fit) {
+  if (cells.empty()) return;
+  std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.from < b.from; });
+  double largest = -1e300, total = 0, below = 0;
+  for (const Cell& c : cells) largest = std::max(largest, c.log_weight);
+  for (const Cell& c : cells) total += std::exp(c.log_weight - largest);
+  fit.low = cells.front().from, fit.high = cells.back().from + cells.back().size;
+  for (const Cell& c : cells) {
+    const double w = std::exp(c.log_weight - largest) / total;
+    if (below < 0.05 && below + w >= 0.05) fit.low = c.from + c.size * (0.05 - below) / w;
+    if (below < 0.95 && below + w >= 0.95) fit.high = c.from + c.size * (0.95 - below) / w;
+    below += w;
+  }
+}
+
+/// With one tolerance of the shape. Adds its cells.
+SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_sided, const Vector& r,
+                   std::vector<Cell>& cells) {
   SingleFit fit;
   fit.amplitude = Vector::Zero(1);
   const double power = g.squaredNorm();
@@ -59,37 +81,39 @@ SingleFit fit_line(const Vector& g, const Matrix& shape, double scale, bool one_
     log_posterior[static_cast<std::size_t>(k)] = l;
     largest = std::max(largest, l);
   }
+  // Trapezoids: half a cell at either end, where a one-sided posterior may be at its largest.
+  const auto cell = [&](int k) { return k == 0 || k == grid - 1 ? 0.5 : 1.0; };
   double sum = 0, first = 0, second = 0;
   for (int k = 0; k < grid; ++k) {
-    const double x = low + k * step, w = std::exp(log_posterior[static_cast<std::size_t>(k)] - largest);
+    const double x = low + k * step, w = cell(k) * std::exp(log_posterior[static_cast<std::size_t>(k)] - largest);
     sum += w, first += w * x, second += w * x * x;
   }
   fit.odds = largest + std::log(sum * step);
   fit.amplitude[0] = first / sum;
   fit.sd = std::sqrt(std::max(0.0, second / sum - fit.amplitude[0] * fit.amplitude[0]));
-  double below = 0;
-  fit.low = low, fit.high = high;
-  for (int k = 0; k < grid; ++k) {
-    const double x = low + k * step, w = std::exp(log_posterior[static_cast<std::size_t>(k)] - largest) / sum;
-    if (below < 0.05 && below + w >= 0.05) fit.low = x + step * ((0.05 - below) / w - 0.5);
-    if (below < 0.95 && below + w >= 0.95) fit.high = x + step * ((0.95 - below) / w - 0.5);
-    below += w;
-  }
+  for (int k = 0; k < grid; ++k)
+    cells.push_back({low + (k == 0 ? 0 : k - 0.5) * step, cell(k) * step,
+                     log_posterior[static_cast<std::size_t>(k)] + std::log(cell(k) * step)});
   return fit;
 }
 
-/// Averaged over tolerances of the shape.
+/// Evidence and interval averaged over tolerances of the shape, the rest with the most probable one.
 SingleFit fit_direction(const Vector& g, const Matrix& shape, double scale, bool one_sided, const Vector& r) {
-  if (shape.cols() == 0) return fit_line(g, shape, scale, one_sided, r);
   std::vector<double> odds;
+  std::vector<Cell> cells;
   SingleFit best;
   for (double factor : shape_factors) {
-    SingleFit fit = fit_line(g, factor * shape, scale, one_sided, r);
+    SingleFit fit = fit_line(g, factor * shape, scale, one_sided, r, cells);
+    if (shape.cols() == 0) {
+      set_interval(cells, fit);
+      return fit;
+    }
     fit.shape_factor = factor;
     odds.push_back(fit.odds - std::log(shape_factors.size()));
     if (odds.size() == 1 || fit.odds > best.odds) best = fit;
   }
   best.odds = log_sum(odds);
+  set_interval(cells, best);
   return best;
 }
 

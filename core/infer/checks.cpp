@@ -18,7 +18,7 @@ FitCheck check_fit(const LinearModel& model, const Bank& bank, const Matrix& sys
   std::vector<std::size_t> owner;
   for (std::size_t t = 0; t < bank.terms.size(); ++t) {
     const Term& term = bank.terms[t];
-    Matrix w = metric.whiten_rows(term.columns, all.first(term.block));
+    Matrix w = whiten_term(term, all, metric);
     w.colwise().normalize();
     directions.conservativeResize(n, directions.cols() + w.cols());
     directions.rightCols(w.cols()) = w;

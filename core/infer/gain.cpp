@@ -79,9 +79,7 @@ Gain held_out_gain(const LinearModel& model, const Budget& budget, const std::ve
 
 Gain held_out_gain(const LinearModel& model, const Budget& budget, const Term& term, double strength) {
   const auto rows = model.base.size();
-  Matrix columns = Matrix::Zero(rows, term.columns.cols());
-  columns.middleRows(model.observables.first(term.block), term.columns.rows()) = strength * term.columns;
-  return compare(model, budget, columns, Matrix::Zero(rows, rows));
+  return compare(model, budget, strength * columns_of(term, model.observables), Matrix::Zero(rows, rows));
 }
 
 }  // namespace calx::infer

@@ -1,5 +1,6 @@
 #include "infer/linearise.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,10 +11,29 @@ namespace calx::infer {
 
 namespace {
 
+constexpr double pi = 3.14159265358979323846;
+// With fewer runs of one seed their median says no more of it than the run without effects.
+constexpr Eigen::Index least_shared = 6;
+constexpr int shared_passes = 2;
+
 std::vector<RunPoint> base_points(const Vector& u, int count, std::uint64_t& seed) {
   std::vector<RunPoint> points;
   for (int k = 0; k < count; ++k) points.push_back({u, -1, {}, seed++});
   return points;
+}
+
+/// Most effects leave most numbers alone, so that the median of all runs of a seed is what they have in common, even
+/// where one signature is still wrong. Its variance is pi / 2 of that of a mean.
+Vector row_median(const Matrix& runs) {
+  Vector median(runs.rows());
+  for (Eigen::Index k = 0; k < runs.rows(); ++k) {
+    Vector row = runs.row(k).transpose();
+    const Eigen::Index half = row.size() / 2;
+    std::nth_element(row.begin(), row.begin() + half, row.end());
+    const double upper = row[half];
+    median[k] = row.size() % 2 == 1 ? upper : 0.5 * (upper + *std::max_element(row.begin(), row.begin() + half));
+  }
+  return median;
 }
 
 /// Most probable correlation of runs of one seed, for the model's partner and the runs with a change.
@@ -30,13 +50,22 @@ double estimate_common(const Denoiser& denoise, const std::vector<Vector>& chang
 
 }  // namespace
 
-Vector LinearModel::response(const Vector& run, const Vector& partner_run) const {
-  Vector out = run - base - common_numbers * (partner_run - base);
+double LinearModel::foretold(double weight) const {
+  return common_numbers <= 0 ? 0 : common_numbers / (common_numbers + (1 - common_numbers) * weight);
+}
+
+Vector LinearModel::response_to(const Vector& run, const Vector& shared, double weight, const Vector& own) const {
+  Vector out = run - base - foretold(weight) * (shared - base);
   for (std::size_t b = 0; b < observables.blocks.size(); ++b) {
     const int first = observables.first(b), n = observables.size(b);
-    if (run.segment(first, n) == partner_run.segment(first, n)) out.segment(first, n).setZero();
+    if (run.segment(first, n) == own.segment(first, n)) out.segment(first, n).setZero();
   }
   return out;
+}
+
+double LinearModel::response_variance() const {
+  const double share = foretold(partner_weight);
+  return 1 - share * common_numbers + (1 - share) * (1 - share) * base_weight;
 }
 
 double LinearModel::response_variance(int seeds) const {
@@ -116,10 +145,24 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   // An effect that cannot be run leaves no signature.
   for (int k = 1; k < runs.cols(); ++k) changed.push_back(runs.col(k).allFinite() ? runs.col(k) : runs.col(0));
   const Denoiser denoise(observables, model.scatter);
-  model.partner = runs.col(0);
+  model.partner = model.common_run = runs.col(0);
+  Matrix without = runs;  // effects, as far as they are known, taken out
   model.common_numbers =
       options.common_numbers >= 0 ? options.common_numbers : estimate_common(denoise, changed, model);
   const double rho = model.common_numbers;
+  const auto clean = [&] {
+    std::vector<Vector> responses;
+    for (const Vector& run : changed) responses.push_back(denoise(model.response(run), model.response_variance()));
+    return responses;
+  };
+  std::vector<Vector> responses = clean();
+  for (int pass = 0; pass < shared_passes && runs.cols() >= least_shared; ++pass) {
+    for (std::size_t k = 0; k < changed.size(); ++k)
+      without.col(static_cast<Eigen::Index>(k) + 1) = changed[k] - responses[k];
+    model.partner = row_median(without);
+    model.partner_weight = 0.5 * pi / static_cast<double>(without.cols());
+    responses = clean();
+  }
   std::size_t next = 0;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     Matrix columns(rows, effects[e].components);
@@ -130,7 +173,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
                              common_seed};
         columns.col(c) = simulator.instrument(point) / amplitude;
       } else {
-        columns.col(c) = denoise(model.response(changed[next++]), model.response_variance()) / amplitude;
+        columns.col(c) = responses[next++] / amplitude;
       }
     }
     model.signatures.push_back(columns);

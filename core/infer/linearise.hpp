@@ -18,7 +18,9 @@ struct LinearModel {
   std::vector<Matrix> signatures;  // per effect, a column per component, per unit of amplitude
   SeedScatter scatter;
   double common_numbers = 0;               // correlation of runs of one seed
-  Vector partner;                          // run at u without effects, of the seed that all runs with effects share
+  Vector partner;                          // what runs at u of the seed that all runs with effects share have in common
+  double partner_weight = 1;               // variance of what it does not share with its seed, over that of one run
+  Vector common_run;                       // run at u of that seed without effects
   Matrix base_columns;                     // runs of the last base pass, at u, a column each
   std::uint64_t base_seed = 0;             // of the first of them; the others follow
   std::vector<double> signature_variance;  // per effect, of a unit of amplitude over that of one run; 0: exact
@@ -27,11 +29,20 @@ struct LinearModel {
   int runs = 0;
 
   /// Response in a run of the partner's seed: the run less what the partner foretells of it, a control variate. Its
-  /// noise covariance is response_variance times that of one run. Zero in blocks where the run is the partner itself,
-  /// because the change cannot reach them.
-  Vector response(const Vector& run) const { return response(run, partner); }
-  Vector response(const Vector& run, const Vector& partner_run) const;
-  double response_variance(int seeds = 1) const;  // of the mean response over so many seeds
+  /// noise covariance is response_variance times that of one run. Zero in blocks where the run is the one without
+  /// effects, bit by bit, because the change cannot reach them.
+  Vector response(const Vector& run) const { return response_to(run, partner, partner_weight, common_run); }
+  double response_variance() const;
+  /// The same for a run of another seed and the run of that seed without effects; variance of the mean of so many.
+  Vector response(const Vector& run, const Vector& partner_run) const {
+    return response_to(run, partner_run, 1, partner_run);
+  }
+  double response_variance(int seeds) const;
+
+ private:
+  /// Share of partner - base that a run of its seed is expected to show. weight: as partner_weight.
+  double foretold(double weight) const;
+  Vector response_to(const Vector& run, const Vector& shared, double weight, const Vector& own) const;
 };
 
 /// Number of runs of a plan, refinement included.

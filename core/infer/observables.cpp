@@ -18,6 +18,12 @@ int Observables::first(std::size_t block) const {
   return n;
 }
 
+std::size_t Observables::sums_of(std::size_t block) const {
+  std::size_t other = 0;
+  while (other < blocks.size() && (blocks[other].sums.empty() || blocks[other].sums != blocks[block].name)) ++other;
+  return other;
+}
+
 Vector Observables::sd() const {
   Vector all(rows());
   for (std::size_t b = 0; b < blocks.size(); ++b) all.segment(first(b), size(b)) = blocks[b].sd;
@@ -44,6 +50,10 @@ void Observables::check() const {
       if (!(block.x[k] > block.x[k - 1])) refuse(block, "places must rise; see number " + std::to_string(k + 1));
     if (block.log_x && !(block.x[0] > 0)) refuse(block, "places along a logarithmic index must be above zero");
     if (!(std::abs(block.autocorrelation) < 1)) refuse(block, "the autocorrelation must lie between -1 and 1");
+    if (block.sums.empty()) continue;
+    bool found = false;
+    for (const Block& other : blocks) found = found || (other.name == block.sums && &other != &block);
+    if (!found) refuse(block, "sums \"" + block.sums + "\", which is no other observable");
   }
 }
 

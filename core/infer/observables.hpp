@@ -20,6 +20,7 @@ struct Block {
   double tolerance = -1;       // sd of what the model may miss, in declared sd; below zero: that of the options
   double base_sd = -1;         // of the base mean where it comes from no runs, in declared sd; below zero: from runs
   Vector fit, hold;            // measured numbers of the campaign that is fitted and of the one held out; empty: none
+  std::string sums;            // name of the block whose running sum from index 0 this one is, same unit; empty: none
 };
 
 /// All blocks of a study, stacked in their order.
@@ -29,10 +30,12 @@ struct Observables {
   int rows() const;
   int first(std::size_t block) const;
   int size(std::size_t block) const { return static_cast<int>(blocks[block].sd.size()); }
+  /// Index of the block of running sums of this one; the number of blocks where there is none.
+  std::size_t sums_of(std::size_t block) const;
   /// Declared sd of all rows.
   Vector sd() const;
   /// Fails with Fault::settings, naming the block, where sizes differ, a number is not finite, an sd is not above zero,
-  /// an index does not rise or a correlation lies outside -1..1 (borders excluded).
+  /// an index does not rise, a correlation lies outside -1..1 (borders excluded), or it sums a block that is not there.
   void check() const;
 };
 

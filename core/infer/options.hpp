@@ -26,11 +26,11 @@ struct Options {
   bool signature_noise = false;  // what is left of the scatter of the runs behind a signature
 
   // Prior shares: nothing, one effect, two effects, something outside the library.
-  double prior_none = 0.35, prior_single = 0.40, prior_pair = 0.05, prior_unknown = 0.20;
+  double prior_none = 0.30, prior_single = 0.40, prior_pair = 0.10, prior_unknown = 0.20;
 
   // Decision.
   double name_above = 0.9;
-  double fitted_above = 0.3;   // probability that the fitted campaign alone must give a named effect
+  double fitted_above = 0.1;   // probability that the fitted campaign alone must give a named effect
   double screen_above = 4.5;   // sd; leave-one-out residuals beyond it are events
   double gain_above = 3;       // nats of held-out log score
   double partner_above = 1;    // nats that a second named effect must add

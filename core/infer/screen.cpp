@@ -17,7 +17,8 @@ std::vector<Event> screen(const LinearModel& model, const Bank& bank, const Matr
   const Observables& all = model.observables;
   Matrix free = systematic + model.sensitivities * model.sensitivities.transpose();
   for (const Term& term : bank.terms) {
-    if (term.family != "constant" && term.family != "smooth" && term.family != "rough") continue;
+    if (term.sums.rows() > 0 || (term.family != "constant" && term.family != "smooth" && term.family != "rough"))
+      continue;
     const int first = all.first(term.block), n = all.size(term.block);
     free.block(first, first, n, n) += 64 * term.columns * term.columns.transpose();
   }

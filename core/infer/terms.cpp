@@ -1,5 +1,6 @@
 #include "infer/terms.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace calx::infer {
@@ -7,6 +8,8 @@ namespace calx::infer {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
+/// A curve whose numbers differ by less than this many declared sd from neighbour to neighbour is flat.
+constexpr double flat = 1;
 
 /// Unit index to the user's index.
 double place_of(const Block& block, double z) {
@@ -16,7 +19,9 @@ double place_of(const Block& block, double z) {
 
 }  // namespace
 
-std::vector<Term> terms_of(const Observables& observables, std::size_t index) {
+namespace {
+
+std::vector<Term> own_terms(const Observables& observables, std::size_t index) {
   const Block& block = observables.blocks[index];
   const Vector z = unit_index(block);
   const int n = static_cast<int>(z.size());
@@ -24,7 +29,7 @@ std::vector<Term> terms_of(const Observables& observables, std::size_t index) {
   const auto add = [&](const char* family, double place, const Matrix& columns) {
     Matrix scaled = columns;
     for (int c = 0; c < columns.cols(); ++c) scaled.col(c) = columns.col(c).cwiseProduct(block.sd);
-    terms.push_back({family, place, index, scaled});
+    terms.push_back({family, place, index, scaled, 0, {}});
   };
   const auto along = [&](auto shape) {
     Vector v(n);
@@ -75,6 +80,43 @@ std::vector<Term> terms_of(const Observables& observables, std::size_t index) {
             const double phase = t * teeth;
             return t >= 1 ? 1.0 : phase - std::floor(phase);
           }));
+  return terms;
+}
+
+/// Change of the block where it is displaced along its index, of rms one declared sd. Empty where the curve is flat.
+std::vector<Term> shift_of(const Block& block, std::size_t index, const Vector& base) {
+  const auto n = base.size();
+  if (n < 12 || block.log_x) return {};
+  const Vector& x = block.x;
+  Vector slope(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Index a = std::max<Eigen::Index>(k - 1, 0), b = std::min(k + 1, n - 1);
+    slope[k] = -(base[b] - base[a]) / (x[b] - x[a]);
+  }
+  const double rms = slope.cwiseQuotient(block.sd).norm() / std::sqrt(static_cast<double>(n));
+  if (rms * (x[n - 1] - x[0]) < flat * static_cast<double>(n)) return {};
+  return {{"shift", 1 / rms, index, slope / rms, 0, {}}};
+}
+
+}  // namespace
+
+std::vector<Term> terms_of(const Observables& observables, std::size_t index, const Vector& base) {
+  const Block& block = observables.blocks[index];
+  std::vector<Term> terms = own_terms(observables, index);
+  const std::vector<Term> shift = shift_of(block, index, base);
+  terms.insert(terms.end(), shift.begin(), shift.end());
+  const std::size_t sums_block = observables.sums_of(index);
+  if (sums_block == observables.blocks.size()) return terms;
+  const Vector& until = observables.blocks[sums_block].x;
+  Matrix weights = Matrix::Zero(until.size(), block.x.size());
+  for (Eigen::Index i = 0; i < until.size(); ++i)
+    for (Eigen::Index k = 0; k < block.x.size() && block.x[k] <= until[i]; ++k)
+      weights(i, k) = block.x[k] - (k == 0 ? 0 : block.x[k - 1]);
+  for (std::size_t k = 0, own = terms.size(); k < own; ++k) {
+    if (terms[k].family == "shift") continue;
+    terms.push_back(terms[k]);
+    terms.back().sums_block = sums_block, terms.back().sums = weights * terms[k].columns;
+  }
   return terms;
 }
 

@@ -27,7 +27,7 @@ Choice best_term(const std::vector<std::size_t>& candidates, const Bank& bank, c
   Choice best;
   for (std::size_t t : candidates) {
     if (std::find(taken.begin(), taken.end(), t) != taken.end()) continue;
-    const Matrix columns = metric.whiten_rows(bank.terms[t].columns, observables.first(bank.terms[t].block));
+    const Matrix columns = whiten_term(bank.terms[t], observables, metric);
     std::vector<double> odds;
     for (double s : strengths) odds.push_back(low_rank_odds(metric.residual(), s * columns));
     const double gain = log_sum(odds) - std::log(strengths.size()) - std::log(static_cast<double>(candidates.size()));
@@ -49,6 +49,7 @@ std::string in_words(const Block& block, const Term& term, double size, double s
   if (term.family == "decay")
     return say("%s: a departure of %+.3g +/- %.2g that fades over %.3g", size, sd, term.place);
   if (term.family == "periodic") return say("%s: a wave of %.3g +/- %.2g with period %.3g", size, sd, term.place);
+  if (term.family == "shift") return say("%s: displaced by %+.3g +/- %.2g along its index", size, sd);
   if (term.family == "sawtooth") return say("%s: a sawtooth of %+.3g +/- %.2g with period %.3g", size, sd, term.place);
   return say("%s: a constant shift of %+.3g +/- %.2g", size, sd);
 }
@@ -80,8 +81,8 @@ std::vector<UnknownTerm> find_terms(const LinearModel& model, const Bank& bank, 
     UnknownTerm found;
     found.term = choice.term, found.gain = choice.gain;
     taken.push_back(choice.term), out.push_back(found);
-    const Matrix& c = bank.terms[choice.term].columns;
-    covariance.block(first, first, n, n) += chosen_strength * chosen_strength * c * c.transpose();
+    const Matrix c = columns_of(bank.terms[choice.term], all);
+    covariance += chosen_strength * chosen_strength * c * c.transpose();
   }
   if (out.empty()) return out;
 
@@ -99,14 +100,14 @@ std::vector<UnknownTerm> find_terms(const LinearModel& model, const Bank& bank, 
   out[0].stability = static_cast<double>(same) / knock_outs;
 
   // All coefficients together, given the error budget.
-  Matrix columns(n, 0);
+  Matrix columns(residual.size(), 0);
   for (const UnknownTerm& t : out) {
-    const Matrix& c = bank.terms[t.term].columns;
-    columns.conservativeResize(n, columns.cols() + c.cols());
+    const Matrix c = columns_of(bank.terms[t.term], all);
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + c.cols());
     columns.rightCols(c.cols()) = c;
   }
   const Metric metric(plain, residual);
-  const Matrix w = metric.whiten_rows(columns, first);
+  const Matrix w = metric.whiten(columns);
   const Matrix v =
       (w.transpose() * w + Matrix::Identity(w.cols(), w.cols()) / (chosen_strength * chosen_strength)).inverse();
   const Vector a = v * (w.transpose() * metric.residual());
@@ -115,8 +116,9 @@ std::vector<UnknownTerm> find_terms(const LinearModel& model, const Bank& bank, 
   for (UnknownTerm& t : out) {
     const auto count = bank.terms[t.term].columns.cols();
     t.coefficients = a.segment(column, count);
-    t.size = sd * (count == 1 ? t.coefficients[0] : t.coefficients.norm());
-    t.size_sd = sd * std::sqrt(v(column, column));
+    const double unit = bank.terms[t.term].family == "shift" ? bank.terms[t.term].place : sd;
+    t.size = unit * (count == 1 ? t.coefficients[0] : t.coefficients.norm());
+    t.size_sd = unit * std::sqrt(v(column, column));
     t.words = in_words(all.blocks[block], bank.terms[t.term], t.size, t.size_sd);
     column += count;
   }

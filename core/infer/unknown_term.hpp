@@ -13,7 +13,8 @@ struct UnknownTerm {
   double stability =
       0;                // share of knock-outs of a fifth of the numbers that choose the same family first; of the first
   Vector coefficients;  // of the term's columns, each of one declared sd
-  double size = 0, size_sd = 0;  // of the first coefficient (norm of the two of a wave), unit of the observable
+  double size = 0, size_sd = 0;  // of the first coefficient (norm of the two of a wave), unit of the observable; of a
+                                 // displacement, unit of the index
   std::string words;
 };
 

@@ -1,14 +1,16 @@
 /* contacts.h: contacts between spheres, one item for each entry of the pair list. Stands in a module once for each
  * precision of the laws, after their text: geometry is that of doubles, the law and what follows are of `real`.
- * calx_contact_laws is generated from the laws of the case. */
+ * calx_contact_laws is generated from the laws of the case. CALX_REACHES: some law acts between surfaces that do not
+ * touch; gaps: up to which it does, m, of each ordered material pair, between spheres and then against parts. */
 
-/* Values of an entry that touches, in columns `entries` apart: force on i, torque on i, torque that j loses; times: of
- * the steps to come, s. */
+/* Values of an entry that touches or is within that gap, in columns `entries` apart: force on i, torque on i, torque
+ * that j loses; times: of the steps to come, s. */
 KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT spheres,
        GLOBAL const u32* RESTRICT material, GLOBAL const u32* RESTRICT first, GLOBAL const u32* RESTRICT second,
        GLOBAL u8* RESTRICT touching, GLOBAL double* RESTRICT history, GLOBAL const u32* RESTRICT law_of,
-       GLOBAL const double* RESTRICT law_numbers, GLOBAL const double* RESTRICT times, GLOBAL real* RESTRICT out,
-       GLOBAL double* RESTRICT share, GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
+       GLOBAL const double* RESTRICT law_numbers, GLOBAL const double* RESTRICT gaps,
+       GLOBAL const double* RESTRICT times, GLOBAL real* RESTRICT out, GLOBAL double* RESTRICT share,
+       GLOBAL double* RESTRICT energy, GLOBAL u32* RESTRICT flags) {
   const u32 e = ITEM;
   if (e >= n.entries || flags[FLAG_STOP]) return;
   const u32 i = first[e], j = second[e];
@@ -19,13 +21,20 @@ KERNEL(CALX_ID(pair_contacts), step_numbers n, GLOBAL const record* RESTRICT sph
   if (n.periodic_y) y = nearest_image(y, n.length_y);
   if (n.periodic_z) z = nearest_image(z, n.length_z);
   const double reach = a->r + b->r, d2 = x * x + y * y + z * z;
+#ifdef CALX_REACHES
+  const double limit = reach + gaps[material[i] * n.materials + material[j]];
+#else
+  const double limit = reach;
+#endif
   share[e] = 0.0;
-  if (!(d2 < reach * reach)) {
+  if (!(d2 < limit * limit)) {
     touching[e] = 0;
     return;
   }
   const u32 starts = touching[e] == 0;
   touching[e] = 1;
+  /* Columns that the laws of this pair do not have hold 0, as on the host. */
+  for (u32 k = 0; starts && k < n.columns; ++k) history[(u64)e * n.columns + k] = 0.0;
   const double distance = sqrt_f64(d2), inverse = 1.0 / distance, overlap = reach - distance;
   CALX_ID(calx_contact) c;
   c.overlap = (real)overlap;

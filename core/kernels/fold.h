@@ -74,7 +74,11 @@ KERNEL(fold_pairs, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunk
   const u64 stride = n.entries;
   for (u32 e = from; e < to; ++e) {
     if (!touching[e]) continue;
+#ifdef CALX_REACHES
+    touches += share[e] > 0.0;
+#else
     ++touches;
+#endif
     if (share[e] > largest) {
       largest = share[e];
       where = e;
@@ -114,9 +118,9 @@ KERNEL(fold_walls, step_numbers n, u32 spans, GLOBAL const chunk* RESTRICT chunk
   for (u32 k = 0; k < 6u * n.parts; ++k) loads[k] = 0.0;
   for (u32 row = from; row < to; ++row) {
     GLOBAL double* load = loads + 6u * row_part[row];
-    touches += counts[row];
     for (u32 k = 0; k < counts[row]; ++k) {
       const u64 at = (u64)row * WALL_CONTACTS + k;
+      touches += share[at] > 0.0;
       if (share[at] > largest) {
         largest = share[at];
         where = row;

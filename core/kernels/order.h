@@ -85,7 +85,7 @@ KERNEL(measure_spheres, step_numbers n, u32 count, GLOBAL const record* RESTRICT
     one.low_x = one.high_x = p.x;
     one.low_y = one.high_y = p.y;
     one.low_z = one.high_z = p.z;
-    one.smallest = one.largest = spheres[k].r + margin[owner ? owner[k] : k];
+    one.smallest = one.largest = spheres[k].r + margin[owner ? owner[k] : k] + n.half_pair_gap;
     join_extent(&all, one);
   }
   out[run] = all;

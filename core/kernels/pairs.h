@@ -38,12 +38,12 @@ FN u32 cell_place(GLOBAL const level* g, u32 x, u32 y, u32 z) {
 }
 
 /* Numbers of spheres by reach. bounds: lower ends of rising classes, m. */
-KERNEL(count_classes, u32 count, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT owner,
+KERNEL(count_classes, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT owner,
        GLOBAL const double* RESTRICT margin, u32 classes, GLOBAL const double* RESTRICT bounds,
        GLOBAL u32* RESTRICT counts) {
   const u32 s = ITEM;
-  if (s >= count) return;
-  const double reach = spheres[s].r + margin[owner ? owner[s] : s];
+  if (s >= n.spheres) return;
+  const double reach = spheres[s].r + margin[owner ? owner[s] : s] + n.half_pair_gap;
   u32 c = 0;
   for (u32 k = 1; k < classes; ++k) c = reach >= bounds[k] ? k : c;
   ATOMIC_ADD(counts + c, 1u);
@@ -55,7 +55,7 @@ KERNEL(count_cells, step_numbers n, vec3 origin, GLOBAL const record* RESTRICT s
   const u32 s = ITEM;
   if (s >= n.spheres) return;
   const vec3 p = inside_box(spheres + s, n);
-  const double reach = spheres[s].r + margin[owner ? owner[s] : s];
+  const double reach = spheres[s].r + margin[owner ? owner[s] : s] + n.half_pair_gap;
   u32 l = 0;
   while (reach > levels[l].reach) ++l;
   GLOBAL const level* g = levels + l;
@@ -78,7 +78,7 @@ KERNEL(fill_cells, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL
   one.x = p.x;
   one.y = p.y;
   one.z = p.z;
-  one.reach = spheres[s].r + margin[one.owner];
+  one.reach = spheres[s].r + margin[one.owner] + n.half_pair_gap;
   one.rank = s;
   seats[at] = one;
 }
@@ -160,7 +160,7 @@ KERNEL(search_pairs, step_numbers n, vec3 origin, GLOBAL const record* RESTRICT 
   const vec3 p = inside_box(spheres + s, n);
   search q;
   q.owner = owner ? owner[s] : s;
-  q.reach = spheres[s].r + margin[q.owner];
+  q.reach = spheres[s].r + margin[q.owner] + n.half_pair_gap;
   q.rank = s;
   for (u32 l = level_of[s]; l < level_count; ++l) {
     GLOBAL const level* g = levels + l;

@@ -75,7 +75,7 @@ KERNEL(search_parts, step_numbers n, double factor, GLOBAL const record* RESTRIC
        GLOBAL u32* RESTRICT first_element, GLOBAL u32* RESTRICT elements) {
   const u32 s = ITEM;
   if (s >= n.spheres) return;
-  const double reach = spheres[s].r + factor * margin[owner ? owner[s] : s];
+  const double reach = spheres[s].r + factor * margin[owner ? owner[s] : s] + n.wall_gap;
   const u32 write = elements != 0;
   u32 rows = 0, found = 0;
   const u32 first_row = write ? row_first[s] : 0u, first = write ? element_first[s] : 0u;

@@ -23,9 +23,10 @@ typedef struct wall_touch {
   u32 slot, old;   /* old: it touched at the last step */
 } wall_touch;
 
-KERNEL(find_wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT row_sphere,
-       GLOBAL const u32* RESTRICT row_part, GLOBAL const u32* RESTRICT first_element,
-       GLOBAL const u32* RESTRICT elements, GLOBAL const part_state* RESTRICT parts, SHAPE_TABLES,
+KERNEL(find_wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLOBAL const u32* RESTRICT material,
+       GLOBAL const u32* RESTRICT row_sphere, GLOBAL const u32* RESTRICT row_part,
+       GLOBAL const u32* RESTRICT first_element, GLOBAL const u32* RESTRICT elements,
+       GLOBAL const part_state* RESTRICT parts, GLOBAL const double* RESTRICT gaps, SHAPE_TABLES,
        GLOBAL u8* RESTRICT touching, GLOBAL vec3* RESTRICT normals, GLOBAL u32* RESTRICT counts,
        GLOBAL wall_touch* RESTRICT touches, GLOBAL const u32* RESTRICT flags) {
   const u32 row = ITEM;
@@ -35,6 +36,12 @@ KERNEL(find_wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres
   GLOBAL const shape* s = shapes + part->shape;
   const vec3 centre = position_of(a);
   const vec3 at_part = rotate3(conjugate(part->turn), sub3_f64(centre, part->shift));
+#ifdef CALX_REACHES
+  const u32 pair = material[row_sphere[row]] * n.materials + part->material;
+  const double radius = a->r + gaps[n.materials * n.materials + pair];
+#else
+  const double radius = a->r;
+#endif
   minima m;
   m.count = 0;
   m.same2 = 16.0 * s->tolerance * s->tolerance;
@@ -47,14 +54,14 @@ KERNEL(find_wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres
     const u32 element = elements[k];
     if (element < s->triangle_count) {
       triangle_minima(triangles + s->triangles + element, edges + s->edges, vertices + s->vertices,
-                      inwards + s->inwards, directions + s->directions, element, at_part, a->r, s->tolerance, &m);
+                      inwards + s->inwards, directions + s->directions, element, at_part, radius, s->tolerance, &m);
       continue;
     }
     GLOBAL const segment* piece = segments + s->segments + (element - s->triangle_count);
     GLOBAL const axis* own_axis = axes + s->axes + piece->axis;
     if (piece->axis != known) place = to_axis(own_axis, at_part, s->size);
     known = piece->axis;
-    segment_minima(piece, own_axis, points + s->points, alongs + s->alongs, element, place, a->r, s->tolerance, &m);
+    segment_minima(piece, own_axis, points + s->points, alongs + s->alongs, element, place, radius, s->tolerance, &m);
   }
   merge_minima(&m);
   const u32 count = m.count < WALL_CONTACTS ? m.count : WALL_CONTACTS;
@@ -140,6 +147,7 @@ KERNEL(wall_contacts, step_numbers n, GLOBAL const record* RESTRICT spheres, GLO
   c.r_j = 0.0;
   c.dt = n.dt;
   c.time = times[flags[FLAG_DONE]];
+  for (u32 k = 0; !t->old && k < n.columns; ++k) history[k * history_stride + slot0 + t->slot] = 0.0;
   calx_wrench_f64 w;
   if (!calx_contact_laws_f64(law_of[pair], &c, history + (slot0 + t->slot), history_stride, !t->old, law_numbers, &w)) {
     ATOMIC_MAX(flags + FLAG_MISSING_LAW, pair + 1u);

@@ -26,6 +26,7 @@ typedef struct step_numbers {
   double low_x, low_y, low_z;             /* m, of the domain */
   double high_x, high_y, high_z;
   double length_x, length_y, length_z; /* m, of a period */
+  double half_pair_gap, wall_gap;      /* m, half of the largest gap at which laws act between spheres; with parts */
   u32 periodic_x, periodic_y, periodic_z;
   u32 spheres, particles, entries, wall_rows, chunks, parts;
   u32 materials, columns; /* columns of history */

@@ -40,14 +40,15 @@ __attribute__((always_inline)) inline void load_inside(const Wrap& wrap, bool wr
     if (wrap.periodic[static_cast<std::size_t>(k)]) x[k] = wrap.inside(x[k], k);
 }
 
-/// Spheres as they come: position, radius and margin.
+/// Spheres as they come: position, radius, margin and half of the gap at which laws act.
 struct Spheres {
   const Record* s;
   const std::uint32_t* owner;  // null: each its own
   const double* margin;
   Wrap wrap;
   bool wraps;
-  double reach(std::size_t k) const { return s[k].r + margin[owner ? owner[k] : k]; }
+  double half_gap;
+  double reach(std::size_t k) const { return s[k].r + margin[owner ? owner[k] : k] + half_gap; }
 };
 
 struct Extent {
@@ -152,7 +153,8 @@ void lay_out(CellSearch::Level& g, std::uint64_t count) {
 
 void CellSearch::measure(const Particles& p, const Wrap& wrap, const Column<double>& margin) {
   const std::size_t n = p.sphere_count(), blocks = blocks_for(n);
-  const Spheres spheres{p.spheres(), p.has_clumps ? p.owner.data() : nullptr, margin.data(), wrap, wrap.any()};
+  const Spheres spheres{p.spheres(), p.has_clumps ? p.owner.data() : nullptr, margin.data(), wrap, wrap.any(),
+                        half_gap_};
   std::vector<Extent> extents(blocks);
   in_blocks(n, blocks, [&](std::size_t b, std::size_t first, std::size_t last) {
     measure_extent(spheres, first, last, extents[b]);
@@ -251,7 +253,8 @@ std::uint32_t sum_up_on_threads(std::uint32_t* counts, std::size_t n, std::uint3
 
 void CellSearch::bin(const Particles& p, const Wrap& wrap, const Column<double>& margin) {
   const std::size_t n = p.sphere_count(), blocks = blocks_for(n);
-  const Spheres spheres{p.spheres(), p.has_clumps ? p.owner.data() : nullptr, margin.data(), wrap, wrap.any()};
+  const Spheres spheres{p.spheres(), p.has_clumps ? p.owner.data() : nullptr, margin.data(), wrap, wrap.any(),
+                        half_gap_};
   cell_of_.resize(n);
   place_.resize(n);
   // First the number of a sphere within its cell. Threads may number them in any order: it shows in no result.

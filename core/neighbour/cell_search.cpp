@@ -90,8 +90,9 @@ void CellSearch::drop_repeats(Run& run) {
 }
 
 void CellSearch::find(const Particles& p, const Wrap& wrap, const Column<double>& margin,
-                      const std::vector<std::uint32_t>& run_start) {
+                      const std::vector<std::uint32_t>& run_start, double gap) {
   const std::size_t runs = run_start.size() - 1;
+  half_gap_ = 0.5 * gap;
   if (runs_.size() < runs) {
     runs_.resize(runs);
     foreign_.resize(runs);

@@ -25,9 +25,10 @@ class CellSearch {
 
   /// Finds every pair of spheres of different particles whose distance, over periodic images, is below the sum of radii
   /// and margins; each once. margin: m, one per particle. run_start: first sphere of each run, and the number of
-  /// spheres at the end. The result depends on neither the number of threads nor the instruction set. Threads: OpenMP.
+  /// spheres at the end. gap: m, added to the distance. The result depends on neither the number of threads nor the
+  /// instruction set. Threads: OpenMP.
   void find(const Particles& particles, const Wrap& wrap, const Column<double>& margin,
-            const std::vector<std::uint32_t>& run_start);
+            const std::vector<std::uint32_t>& run_start, double gap = 0);
   const Run& run(std::size_t r) const { return runs_[r]; }
   std::size_t memory_bytes() const;
 
@@ -61,6 +62,7 @@ class CellSearch {
 
   std::vector<Level> levels_;  // rising reach
   Vec3 origin_;                // m, of cell coordinates
+  double half_gap_ = 0;        // m, share of each sphere
   bool repeats_ = false;       // a pair may be met more than once
   std::vector<std::uint32_t> cell_start_;
   // Per sphere, by rank.

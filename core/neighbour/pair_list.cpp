@@ -34,10 +34,10 @@ void PairList::make_chunks(const Particles& p) {
 }
 
 void PairList::build(const Particles& p, const Wrap& wrap, const Column<double>& margin, const HistorySpec& spec,
-                     const std::uint32_t* old_rank) {
+                     const std::uint32_t* old_rank, double gap) {
   const std::size_t n = p.sphere_count();
   make_chunks(p);
-  search_.find(p, wrap, margin, run_start_);
+  search_.find(p, wrap, margin, run_start_, gap);
 
   Column<std::size_t> old_row;
   old_row.swap(row_);

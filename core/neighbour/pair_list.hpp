@@ -43,7 +43,7 @@ class PairList {
  public:
   std::vector<Chunk> chunks;
   Column<std::uint32_t> i, j;     // sphere ranks
-  Column<std::uint8_t> touching;  // at the last evaluation
+  Column<std::uint8_t> touching;  // at the last evaluation, or within the gap at which the laws of the pair act
   Column<double> history;         // value k of entry e at history[e * columns + k]; a few spare values at the end
   std::uint32_t columns = 0;
   Column<std::uint32_t> cross;           // slot of the n-th entry of a chunk that leaves it, entries in order
@@ -54,9 +54,10 @@ class PairList {
   std::size_t entry_count() const { return i.size(); }
 
   /// Builds the list for particles as they stand. margin: m, one per particle. old_rank: for each sphere its rank when
-  /// the present history was written, or 0xFFFFFFFF for a new sphere; null keeps ranks. Threads: OpenMP.
+  /// the present history was written, or 0xFFFFFFFF for a new sphere; null keeps ranks. gap: m, the largest at which
+  /// some law acts. Threads: OpenMP.
   void build(const Particles& particles, const Wrap& wrap, const Column<double>& margin, const HistorySpec& spec,
-             const std::uint32_t* old_rank);
+             const std::uint32_t* old_rank, double gap = 0);
   /// Chunks alone, without entries. For lists that were built elsewhere.
   void make_chunks(const Particles& particles);
   std::size_t memory_bytes() const;

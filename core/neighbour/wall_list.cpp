@@ -32,12 +32,12 @@ struct WallList::Search {
   const Particles& particles;
   const std::vector<PartPlace>& parts;
   const Column<double>& margin;
-  double margin_factor;
+  double margin_factor, gap;
   std::vector<Box> box;              // of each part, world frame
   std::vector<std::uint32_t> shown;  // parts that are present
 
   double reach(std::uint32_t k) const {
-    return particles.spheres()[k].r + margin_factor * margin[particles.owner_of(k)];
+    return particles.spheres()[k].r + margin_factor * margin[particles.owner_of(k)] + gap;
   }
   /// Which of the parts some sphere of first .. last may touch.
   void near(std::uint32_t first, std::uint32_t last, const std::vector<std::uint32_t>& from,
@@ -94,10 +94,10 @@ struct WallList::Search {
 
 void WallList::build(const Particles& p, const PairList& pairs, const std::vector<PartPlace>& parts,
                      const Column<double>& margin, double margin_factor, const HistorySpec& spec,
-                     const std::uint32_t* old_rank) {
+                     const std::uint32_t* old_rank, double gap) {
   const std::size_t chunk_count = pairs.chunks.size();
   work_.resize(std::max(work_.size(), chunk_count));
-  Search search{p, parts, margin, margin_factor, {}, {}};
+  Search search{p, parts, margin, margin_factor, gap, {}, {}};
   for (std::uint32_t a = 0; a < parts.size(); ++a) {
     search.box.push_back(world_box(parts[a]));
     if (parts[a].present) search.shown.push_back(a);

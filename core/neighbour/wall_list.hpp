@@ -31,18 +31,19 @@ class WallList {
   std::vector<std::uint32_t> elements;
   std::vector<std::size_t> first_row;  // per chunk; one more at the end
   // Per contact slot, kWallContacts consecutive slots per row.
-  Column<std::uint8_t> touching;
-  Column<Vec3> normal;     // part frame, at the last evaluation
-  Column<double> history;  // column k of slot c at history[k * stride + c]
+  Column<std::uint8_t> touching;  // or within the gap at which laws act
+  Column<Vec3> normal;            // part frame, at the last evaluation
+  Column<double> history;         // column k of slot c at history[k * stride + c]
   std::size_t stride = 0;
   std::size_t row_count() const { return sphere.size(); }
   static std::size_t stride_of(std::size_t rows) { return (rows * kWallContacts + 7) / 8 * 8 + 8; }
 
   /// old_rank as in PairList::build. Rows follow the chunks of pairs. margin_factor: 1 right after the pair list was
-  /// built; 2 when particles may already have used up their margin and may go back as far.
+  /// built; 2 when particles may already have used up their margin and may go back as far. gap: m, the largest at which
+  /// some law acts against a part.
   void build(const Particles& particles, const PairList& pairs, const std::vector<PartPlace>& parts,
-             const Column<double>& margin, double margin_factor, const HistorySpec& spec,
-             const std::uint32_t* old_rank);
+             const Column<double>& margin, double margin_factor, const HistorySpec& spec, const std::uint32_t* old_rank,
+             double gap = 0);
   std::size_t memory_bytes() const;
 
  private:

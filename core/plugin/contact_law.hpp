@@ -37,7 +37,7 @@ class ContactLaw {
   std::vector<double> new_history() const;
   /// The value changes sign when i and j trade places.
   bool is_odd(std::uint32_t column) const { return table_->state[column].flags & CALX_FIELD_ODD; }
-  /// The value survives separation while the pair is listed.
+  /// The value survives separation up to the reach of the law.
   bool keeps_apart(std::uint32_t column) const { return table_->state[column].flags & CALX_FIELD_KEEP_APART; }
   /// Vector the column belongs to, 0 for a scalar; the three columns of a vector turn together.
   std::uint32_t vector_group(std::uint32_t column) const { return (table_->state[column].flags >> 8) & 0xffu; }

@@ -74,6 +74,25 @@ Row field_row(const calx_field& field) {
   return row;
 }
 
+/// How a case writes rows that are not a key of their own name: vectors as lists, angles in degrees. Presets shown.
+std::string written_as(const FieldTable& fields) {
+  std::string out;
+  for (std::uint32_t k = 0; k < fields.count; ++k) {
+    const calx_field* field = fields.fields + k;
+    std::string name = field->name, value;
+    if ((field->flags >> 8) & 0xffu) {  // tables are checked: three rows, called NAME_x, NAME_y, NAME_z
+      name.resize(name.size() - 2);
+      value = "[" + number(field[0].preset) + ", " + number(field[1].preset) + ", " + number(field[2].preset) + "]";
+      k += 2;
+    } else if (std::string(field->unit).compare(0, 3, "rad") == 0) {
+      name += "_deg";  // as a person would write it, not to the last digit
+      value = number(std::round(field->preset * 180 / 3.14159265358979324 * 1e6) / 1e6);
+    }
+    if (!value.empty()) out += (out.empty() ? "\"" : ", \"") + name + "\": " + value;
+  }
+  return out.empty() ? out : "  a case may write " + out + "\n";
+}
+
 std::string field_section(const std::string& title, const FieldTable& fields) {
   if (fields.count == 0) return "";
   std::vector<Row> rows = {{"name", "unit", "range", "preset", "meaning"}};
@@ -155,10 +174,12 @@ std::string plugin_describe_text(const std::string& id, const std::vector<std::s
                 {"library", from.path},
                 {"sha256", from.sha256}});
   out += field_section("parameters", {d.parameter, d.parameter_count});
+  out += written_as({d.parameter, d.parameter_count});
   if (kind == CALX_CONTACT_LAW) {
     const ContactLaw law = preset_law(registry, d);
     out += field_section("material properties, once per material", law.material());
     out += field_section("parameters of a pair of materials", law.given());
+    out += written_as(law.given());
     if (law.table().derive) out += field_section("pair values the law reads, derived from those", law.pair());
     out += field_section("particle columns", law.prop());
     out += field_section("contact history", law.state());

@@ -69,6 +69,12 @@ std::vector<std::string> plugin_search_path(const std::vector<std::string>& give
   else if (home.is_absolute())
     folders.add(home / ".local" / "share" / "calx" / "plugins");
 
+  for (const std::string& folder : installed_plugin_folders()) folders.add(folder);
+  return folders.list;
+}
+
+std::vector<std::string> installed_plugin_folders() {
+  FolderList folders;
   std::error_code bad;
   const fs::path program = fs::read_symlink("/proc/self/exe", bad);
   if (!bad) {

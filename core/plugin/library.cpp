@@ -131,8 +131,7 @@ void PluginLibrary::check_entry() const {
                   hex(CALX_ABI_MAGIC) + "; it is no Calx plugin, or built for another byte order"};
   if (entry_->abi_major != CALX_ABI_MAJOR)
     throw Refused{path_ + " was built for ABI " + std::to_string(entry_->abi_major) + "." +
-                  std::to_string(entry_->abi_minor) + ", this host speaks ABI " + std::to_string(CALX_ABI_MAJOR) + "." +
-                  std::to_string(CALX_ABI_MINOR) + ": rebuild it"};
+                  std::to_string(entry_->abi_minor) + ", this host speaks ABI " + abi_version() + ": rebuild it"};
   // The size of release 1.0; later releases may only add behind get_factory.
   constexpr std::uint32_t needed = offsetof(calx_entry, get_factory) + sizeof(void*);
   if (entry_->struct_size < needed)

@@ -23,8 +23,8 @@ using nlohmann::json;
 
 const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",      "version", "vendor",
                                                 "license",     "plugins", "requires", "sha256"};
-const std::vector<std::string> plugin_keys = {"id",     "kind",      "summary", "effect", "text",
-                                              "symbol", "stiffness", "example", "surface"};
+const std::vector<std::string> plugin_keys = {"id",     "kind",      "summary", "effect",  "text",
+                                              "symbol", "stiffness", "reach",   "example", "surface"};
 
 /// "linux-x86_64": the key of this machine's library where a manifest names several.
 std::string platform() {
@@ -96,11 +96,11 @@ std::string host_fault(const json& root) {
   const int major = number(abi, "major", "/abi"), minor = number(abi, "minor", "/abi");
   if (major != CALX_ABI_MAJOR)
     return "built for ABI " + std::to_string(major) + "." + std::to_string(minor) + ", this host speaks ABI " +
-           std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + ": rebuild it";
-  const int draft = number(abi, "draft", "/abi");
+           abi_version() + ": rebuild it";
+  const int draft = abi.contains("draft") ? number(abi, "draft", "/abi") : CALX_ABI_DRAFT;
   if (draft != CALX_ABI_DRAFT)
-    return "built against draft " + std::to_string(draft) + ", this host speaks draft " +
-           std::to_string(CALX_ABI_DRAFT) + ": rebuild it";
+    return "built against draft " + std::to_string(draft) + " of the interface, this host speaks the released ABI " +
+           abi_version() + ": rebuild it, and take \"draft\" out of the manifest";
   const auto wanted = root.find("requires");
   if (wanted == root.end()) return "";
   if (!wanted->is_array()) throw Refused{"/requires: " + wanted->dump() + " is not a list"};
@@ -156,6 +156,15 @@ std::vector<std::string> names(const json& object, const char* key, const std::s
   return out;
 }
 
+/// Names of columns of a pair row.
+std::vector<std::string> columns(const json& plugin, const char* key, const std::string& where) {
+  std::vector<std::string> out = names(plugin, key, where);
+  for (const std::string& column : out)
+    if (column.empty() || column.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+      throw Refused{where + "/" + key + ": \"" + column + "\" is not the name of a column"};
+  return out;
+}
+
 /// A plugin that is a law text: no library, nothing runs before the host has read and compiled the text.
 void read_text_plugin(const json& plugin, const std::string& where, PluginManifest& one) {
   const std::string name = text(plugin, "text", where);
@@ -171,10 +180,8 @@ void read_text_plugin(const json& plugin, const std::string& where, PluginManife
       one.symbol.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
     throw Refused{where + "/symbol: \"" + one.symbol + "\" is not a name of lower-case letters that begins with \"" +
                   stem + "\", the stem of the text's file"};
-  one.stiffness = names(plugin, "stiffness", where);
-  for (const std::string& column : one.stiffness)
-    if (column.empty() || column.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
-      throw Refused{where + "/stiffness: \"" + column + "\" is not the name of a column"};
+  one.stiffness = columns(plugin, "stiffness", where);
+  one.reach = columns(plugin, "reach", where);
   one.text = path_beside(name, where + "/text", fs::path(one.path).parent_path());
 }
 

@@ -20,16 +20,21 @@ struct PluginManifest {
   std::string text;     // absolute path of a law text, where the plugin has no library: the host compiles it
   std::string symbol;   // of the law in that text
   std::vector<std::string> stiffness;  // columns of the text's pair row that are stiffnesses, N/m: the stable step
+  std::vector<std::string> reach;      // columns of it that are gaps up to which the law acts, m
   std::vector<std::string> examples;   // JSON objects of parameters that `calx plugin check` tries besides presets
   bool open = false;                   // a geometry whose surface has rims on purpose
   std::string refused;  // why it cannot be used (bad manifest, duplicate id, other architecture); empty: usable
   std::shared_ptr<const EffectInfo> effect{};  // what it says of itself as an effect (effects.hpp); null: it is none
 };
 
-/// Search folders in order: given, CALX_PLUGIN_PATH (secure_getenv), $XDG_DATA_HOME/calx/plugins, beside the program
-/// (build tree: <dir of calx>/../plugins) and <prefix>/lib/calx/plugins. Canonical, each once, only those that exist.
+/// Search folders in order: given, CALX_PLUGIN_PATH (secure_getenv), $XDG_DATA_HOME/calx/plugins, then those that were
+/// installed with the program. Canonical, each once, only those that exist.
 /// Throws Error(Fault::files) for a given folder that does not exist and for a relative one in CALX_PLUGIN_PATH.
 std::vector<std::string> plugin_search_path(const std::vector<std::string>& given);
+
+/// Folders that came with the program: beside it (build tree: <dir of calx>/../plugins) and <prefix>/lib/calx/plugins.
+/// Canonical, only those that exist.
+std::vector<std::string> installed_plugin_folders();
 
 /// All manifests in the folders, sorted within each folder; of a duplicate id the first wins, the others are refused.
 std::vector<PluginManifest> discover_plugins(const std::vector<std::string>& path);

@@ -55,8 +55,9 @@ struct PluginRegistry::Impl {
     std::string bad;
     for (const PluginManifest& m : manifests)
       if (m.id.empty()) bad += "; " + m.refused;
-    throw Error(Fault::plugin, where + "no plugin " + id + " of the kind " + kind + " found in " + joined(search) +
-                                   (near.empty() ? "" : "; did you mean \"" + near + "\"?") + bad);
+    throw Error(Fault::plugin,
+                where + "no plugin " + id + " of the kind " + kind + " found in " + joined(search) +
+                    (near.empty() ? "; name its folder with --plugin-path" : "; did you mean \"" + near + "\"?") + bad);
   }
 
   std::shared_ptr<PluginLibrary> library(const PluginManifest& manifest) {

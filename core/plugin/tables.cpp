@@ -88,6 +88,10 @@ std::string contact_law_fault(const calx_contact_law& law) {
   if (!law.derive && law.given_count != law.pair_count)
     return "it has no derive, so its given and pair tables must be the same, but they have " +
            std::to_string(law.given_count) + " and " + std::to_string(law.pair_count) + " rows";
+  for (std::uint32_t k = 0; k < law.state_count; ++k)
+    if (!law.reach && law.state[k].flags & CALX_FIELD_KEEP_APART)
+      return std::string("its history \"") + law.state[k].name +
+             "\" survives separation, but it has no reach, up to which it could";
   if (law.needs >> CALX_IN_COUNT)
     return "it needs an input column this host does not have (needs = " + std::to_string(law.needs) + ", known are " +
            std::to_string(CALX_IN_COUNT) + " bits)";
@@ -161,6 +165,8 @@ std::string descriptor_fault(const calx_descriptor& d) {
   return fault.empty() ? "" : "the descriptor of " + std::string(d.id) + " is wrong: " + fault;
 }
 
+std::string abi_version() { return std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR); }
+
 std::string interface_fault(const std::string& kind, const void* table) {
   if (!table) return "it has no table " + kind;
   struct Head {
@@ -181,10 +187,11 @@ std::string interface_fault(const std::string& kind, const void* table) {
   if (known == std::end(sizes)) return "this host does not know the kind " + kind;
   if (head.draft != CALX_ABI_DRAFT)
     return "its table " + kind + " was built against draft " + std::to_string(head.draft) +
-           ", this host speaks draft " + std::to_string(CALX_ABI_DRAFT) + ": rebuild it";
+           ", this host speaks the released one of ABI " + abi_version() + ": rebuild it";
+  // Tables of functions never grow, so their size is that of release 1.0.
   if (head.struct_size < known->size)
-    return "its table " + kind + " has " + std::to_string(head.struct_size) + " bytes, draft " +
-           std::to_string(CALX_ABI_DRAFT) + " needs " + std::to_string(known->size) + ": rebuild it";
+    return "its table " + kind + " has " + std::to_string(head.struct_size) + " bytes, ABI 1.0 needs " +
+           std::to_string(known->size) + ": rebuild it";
   if (kind == CALX_CONTACT_LAW) return contact_law_fault(*static_cast<const calx_contact_law*>(table));
   if (kind == CALX_GEOMETRY)
     return static_cast<const calx_geometry*>(table)->build ? "" : lacks(CALX_GEOMETRY, "build");

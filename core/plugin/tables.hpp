@@ -19,6 +19,9 @@ constexpr std::uint32_t field_limit = 64;
 /// case, so rows of a vector group must be called NAME_x, NAME_y, NAME_z.
 std::string field_table_fault(const char* table, const calx_field* fields, std::uint32_t count, bool users_write);
 
+/// Of this host, "1.0".
+std::string abi_version();
+
 std::string descriptor_fault(const calx_descriptor& descriptor);
 
 /// Size, draft, functions and field tables of the table an instance returned for kind or for "calx.state/1".

@@ -68,6 +68,11 @@ __attribute__((unused)) static double CALX_CALL stable_dt(const double* pair, do
   /* A tenth of the period of mass and stiffest spring, 2 pi sqrt(m / k). */
   return k > 0.0 ? 0.62831853071795865 * sqrt(m_eff / k) : HUGE_VAL;
 }
+__attribute__((unused)) static double CALX_CALL reach(const double* pair, double, double) {
+  double gap = 0.0;
+@GAPS@  (void)pair;
+  return gap;
+}
 static calx_contact_law make_law() {
   calx_contact_law law = calx_contact_law();
   CALX_LAW_FILL(law, @SYMBOL@);
@@ -75,6 +80,7 @@ static calx_contact_law make_law() {
   law.given_count = law.pair_count;
   law.given = law.pair;
   law.stable_dt = @STABLE@;
+  law.reach = @REACH@;
   law.source = calx_text;
   law.source_size = sizeof calx_text - 1;
   law.source_sha256 = @SHA256@;
@@ -125,11 +131,12 @@ extern "C" { CALX_EXPORT extern const calx_entry calx_plugin_entry; const calx_e
   CALX_ABI_MAJOR, CALX_ABI_MINOR, sizeof(calx_entry), 0, init, deinit, get_factory}; }
 )";
 
-std::string stiffness_lines(const PluginManifest& manifest) {
+/// Sets a variable to the largest of some columns of the pair row.
+std::string largest_lines(const std::string& symbol, const std::vector<std::string>& columns, const std::string& of) {
   std::string out;
-  for (const std::string& name : manifest.stiffness) {
-    const std::string value = "pair[offsetof(" + manifest.symbol + "_pair_f64, " + name + ") / sizeof(double)]";
-    out += "  k = " + value + " > k ? " + value + " : k;\n";
+  for (const std::string& name : columns) {
+    const std::string value = "pair[offsetof(" + symbol + "_pair_f64, " + name + ") / sizeof(double)]";
+    out += "  " + of + " = " + value + " > " + of + " ? " + value + " : " + of + ";\n";
   }
   return out;
 }
@@ -152,7 +159,9 @@ std::string generate(const PluginManifest& manifest, const std::string& law, con
   }
   std::string entry = std::string(is_law ? kLaw : kForce) + kEntry;
   entry = replaced(entry, "@SYMBOL@", manifest.symbol);
-  entry = replaced(entry, "@STIFFNESS@", stiffness_lines(manifest));
+  entry = replaced(entry, "@STIFFNESS@", largest_lines(manifest.symbol, manifest.stiffness, "k"));
+  entry = replaced(entry, "@GAPS@", largest_lines(manifest.symbol, manifest.reach, "gap"));
+  entry = replaced(entry, "@REACH@", manifest.reach.empty() ? "0" : "reach");
   entry = replaced(entry, "@STABLE@", manifest.stiffness.empty() ? "0" : "stable_dt");
   for (const auto& each : std::map<std::string, std::string>{{"SHA256", sha256(law.data(), law.size())},
                                                              {"ID", manifest.id},

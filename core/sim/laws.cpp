@@ -29,12 +29,6 @@ std::vector<std::string> foreign_keys(const Parameters& parameters, const FieldT
 void refuse_unsupported(const calx_contact_law& table, const std::string& where) {
   if (table.prop_count > 0)
     throw Error(Fault::plugin, where + ": the law reads particle columns, which this host does not offer yet");
-  if (table.reach)
-    throw Error(Fault::plugin, where + ": the law acts at a distance (reach), which this host does not offer yet");
-  for (std::uint32_t k = 0; k < table.state_count; ++k)
-    if (table.state[k].flags & CALX_FIELD_KEEP_APART)
-      throw Error(Fault::plugin, where + ": the law's history \"" + table.state[k].name +
-                                     "\" survives separation, which this host does not offer yet");
 }
 
 /// Values of a table for grains of another size. lines gets what changed, "calcine-steel calx.linear: kn 1e3 N/m ->
@@ -104,7 +98,11 @@ CaseLaws load_laws(const CaseSettings& settings, PluginRegistry& registry) {
         term.state_offset = list.state_count;
         term.pair_row = law.derive(row[direction], row[1 - direction], made.given, settings.file, entry.pointer);
         term.pair_row_f32.assign(term.pair_row.begin(), term.pair_row.end());
-        for (std::uint32_t k = 0; k < law.state().count; ++k) list.odd.push_back(law.is_odd(k));
+        for (std::uint32_t k = 0; k < law.state().count; ++k) {
+          list.odd.push_back(law.is_odd(k));
+          list.keep.push_back(law.keeps_apart(k));
+        }
+        list.reaches = list.reaches || law.acts_apart();
         const auto presets = law.new_history();
         list.preset.insert(list.preset.end(), presets.begin(), presets.end());
         list.needs |= law.table().needs;

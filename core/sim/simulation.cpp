@@ -216,6 +216,10 @@ struct Simulation::Impl {
   World w;
 };
 
+std::vector<std::string> plugin_folders_of(const SimulationOptions& options) {
+  return options.safe_mode ? installed_plugin_folders() : plugin_search_path(options.plugin_path);
+}
+
 Simulation::Simulation(CaseFile input, const SimulationOptions& options)
     : impl_(std::make_unique<Impl>(std::move(input))) {
   World& w = impl_->w;
@@ -224,9 +228,9 @@ Simulation::Simulation(CaseFile input, const SimulationOptions& options)
   std::error_code none;
   PluginTrust trust;
   trust.pins_required = options.require_pins;
-  if (std::filesystem::is_regular_file(w.c.file, none))
+  if (!options.safe_mode && std::filesystem::is_regular_file(w.c.file, none))
     trust.text_folder = std::filesystem::canonical(w.c.file, none).parent_path().string();
-  w.registry = std::make_unique<PluginRegistry>(plugin_search_path(options.plugin_path), w.c.plugin_pins, trust);
+  w.registry = std::make_unique<PluginRegistry>(plugin_folders_of(options), w.c.plugin_pins, trust);
   for (const calx_entry* entry : options.plugins)
     w.registry->add(*entry, "plugin " + std::to_string(&entry - options.plugins.data()) + " of this program");
   build_shapes(w);

@@ -18,8 +18,12 @@ struct SimulationOptions {
   bool fast = false;           // devices may contract a * b + c: other last digits than the processor's
   std::vector<std::string> plugin_path;
   bool require_pins = false;               // refuse plugins whose hash the case does not give
+  bool safe_mode = false;                  // plugins that came with the program only, whatever plugin_path holds
   std::vector<const calx_entry*> plugins;  // in this program; used before any of the same id in a folder
 };
+
+/// Folders in which plugins of a simulation are looked for.
+std::vector<std::string> plugin_folders_of(const SimulationOptions& options);
 
 /// One time-step limit and where it comes from.
 struct StepLimit {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
-#include "calx/abi.h"
+#include "plugin/tables.hpp"
 
 namespace calx {
 namespace {
@@ -122,8 +122,7 @@ std::string summary_json(Simulation& s, const RunFacts& facts) {
                        {"parameters", Json::parse(e.parameters)}});
   j["provenance"] = {{"calx", version()},
                      {"git", git_revision()},
-                     {"abi", std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) + " draft " +
-                                 std::to_string(CALX_ABI_DRAFT)},
+                     {"abi", abi_version()},
                      {"plugins", plugins},
                      {"effects", effects},
                      {"case_sha256", facts.case_sha256},

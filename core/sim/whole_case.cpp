@@ -6,7 +6,7 @@
 namespace calx {
 
 CaseFile read_whole_case(const RunOptions& options) {
-  const PluginEffects effects(plugin_search_path(options.simulation.plugin_path));
+  const PluginEffects effects(plugin_folders_of(options.simulation));
   return whole_case(read_case(options.case_path, options.overrides, &effects));
 }
 

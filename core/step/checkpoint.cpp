@@ -1,7 +1,7 @@
 // checkpoint.cpp: saves and restores everything that decides the bits of the steps to come.
 //
-// Rows that do not touch have no part in any sum, so the lists themselves are not saved: the order of particles, the
-// margins and the positions of the last rebuild are, and the lists are built from those.
+// Rows that neither touch nor lie within a law's reach have no part in any sum, so the lists themselves are not saved:
+// the order of particles, the margins and the positions of the last rebuild are, and the lists are built from those.
 #include <algorithm>
 
 #include "base/error.hpp"
@@ -106,6 +106,7 @@ void Engine::load(const StateReader& in) {
   largest_overlap_ = lengths[3];
   energy_ = {sums[0], sums[1], sums[2], sums[3], sums[4], sums[5], sums[6], sums[7], sums[8], sums[9], sums[10]};
   uniform_ = one_material();
+  measure_gaps();
   // Lists of what this engine may have run before must not lend their history.
   pairs_ = {};
   walls_ = {};
@@ -123,10 +124,10 @@ void Engine::load(const StateReader& in) {
     now[k] = position(s[k]);
     if (!fresh) s[k].x = reference_[k].x, s[k].y = reference_[k].y, s[k].z = reference_[k].z;
   }
-  pairs_.build(particles, options.wrap, margin_, history_, nullptr);
+  pairs_.build(particles, options.wrap, margin_, history_, nullptr, largest_pair_gap_);
   for (std::size_t k = 0; k < spheres; ++k) s[k].x = now[k].x, s[k].y = now[k].y, s[k].z = now[k].z;
   place_parts(0, places_);
-  walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
+  walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr, largest_wall_gap_);
   size_sums();
   set_haste();
   used_.assign(pairs_.chunks.size(), 1);  // not known: the first step looks at every particle
@@ -135,13 +136,17 @@ void Engine::load(const StateReader& in) {
   stale_ = counts[2] != 0;
   count_changed_ = counts[3] != 0;
 
+  // Laws may reach less far than those that wrote the checkpoint: what they would no longer see has ended.
+  const bool reaches = std::any_of(laws.begin(), laws.end(), [](const LawList* list) { return list && list->reaches; });
   const auto i = in.get_u32("contacts/pairs/i"), j = in.get_u32("contacts/pairs/j");
   std::vector<std::vector<double>> columns(history_.columns);
   for (std::uint32_t k = 0; k < history_.columns; ++k)
     columns[k] = in.get_doubles("contacts/pairs/history" + std::to_string(k));
   for (std::size_t c = 0, e = 0; c < i.size(); ++c) {
     while (e < pairs_.entry_count() && (pairs_.i[e] < i[c] || (pairs_.i[e] == i[c] && pairs_.j[e] < j[c]))) ++e;
-    if (e == pairs_.entry_count() || pairs_.i[e] != i[c] || pairs_.j[e] != j[c])
+    const bool listed = e < pairs_.entry_count() && pairs_.i[e] == i[c] && pairs_.j[e] == j[c];
+    if (!listed && reaches) continue;
+    if (!listed)
       throw Error(Fault::files, "checkpoint: a contact stands between spheres that are far apart; the file is damaged");
     pairs_.touching[e] = 1;
     for (std::uint32_t k = 0; k < history_.columns; ++k) pairs_.history[e * history_.columns + k] = columns[k][c];
@@ -157,8 +162,9 @@ void Engine::load(const StateReader& in) {
     while (row < walls_.row_count() &&
            (walls_.sphere[row] < sphere[c] || (walls_.sphere[row] == sphere[c] && walls_.part[row] < part[c])))
       ++row;
-    if (row == walls_.row_count() || walls_.sphere[row] != sphere[c] || walls_.part[row] != part[c] ||
-        used >= kWallContacts)
+    const bool listed = row < walls_.row_count() && walls_.sphere[row] == sphere[c] && walls_.part[row] == part[c];
+    if (!listed && reaches) continue;
+    if (!listed || used >= kWallContacts)
       throw Error(Fault::files, "checkpoint: a wall contact stands far from its part; the file is damaged");
     const std::size_t slot = row * kWallContacts + used;
     walls_.touching[slot] = 1;

@@ -153,12 +153,39 @@ void Engine::wrap_positions() {
 void Engine::check_periodic_lengths() const {
   double bound = 0;
   for (const auto& b : particles.body) bound = std::max(bound, b.r);
-  const double least = 4 * (bound + largest_margin_);
+  const double least = 4 * (bound + largest_margin_) + 2 * largest_pair_gap_;
   for (int k = 0; k < 3; ++k)
     if (options.wrap.periodic[static_cast<std::size_t>(k)] && options.wrap.length[k] < least)
       throw Error(Fault::settings, std::string("/domain: periodic along ") + "xyz"[k] +
                                        format(" over %.4g m; particles up to %.4g m across need at least %.4g m",
                                               options.wrap.length[k], 2 * bound, least));
+}
+
+// Beyond its own reach a law has no wrench and its history is as new, so that it shows nowhere that small spheres are
+// looked at from as far as large ones.
+void Engine::measure_gaps() {
+  largest_pair_gap_ = largest_wall_gap_ = 0;
+  pair_gaps_.assign(laws.size(), 0);
+  wall_gaps_.assign(laws.size(), 0);
+  if (std::none_of(laws.begin(), laws.end(), [](const LawList* list) { return list && list->reaches; })) return;
+  std::vector<double> radius(material_count, 0);
+  for (std::size_t k = 0; k < particles.sphere_count(); ++k) {
+    double& largest = radius[particles.material[particles.owner_of(k)]];
+    largest = std::max(largest, particles.spheres()[k].r);
+  }
+  for (std::uint32_t a = 0; a < material_count; ++a)
+    for (std::uint32_t b = 0; b < material_count; ++b) {
+      const LawList* list = laws[a * material_count + b];
+      if (!list || !list->reaches || !(radius[a] > 0)) continue;
+      const double on_part = wall_gaps_[a * material_count + b] = reach_of(*list, radius[a], 0);
+      largest_wall_gap_ = std::max(largest_wall_gap_, on_part);
+      if (!(radius[b] > 0)) continue;
+      // A pair is found as (i, j) or (j, i).
+      const double gap = reach_of(*list, radius[a], radius[b]);
+      for (const std::uint32_t pair : {a * material_count + b, b * material_count + a})
+        pair_gaps_[pair] = std::max(pair_gaps_[pair], gap);
+      largest_pair_gap_ = std::max(largest_pair_gap_, gap);
+    }
 }
 
 void Engine::rebuild(double dt, bool reorder) {
@@ -174,6 +201,7 @@ void Engine::rebuild(double dt, bool reorder) {
     smallest_margin_ = options.skin > 0 ? options.skin : 0.1 * smallest;
     largest_margin_ = std::max(smallest, smallest_margin_);
     cell_ = 2 * (largest + smallest_margin_);
+    measure_gaps();
     check_periodic_lengths();
     uniform_ = one_material();
   }
@@ -209,8 +237,8 @@ void Engine::build_lists(double dt, bool reorder) {
   margin_.resize(particles.count());
   for (std::size_t p = 0; p < particles.count(); ++p)
     margin_[p] = std::clamp(kListSteps * dt * norm(velocity(particles.body[p])), smallest_margin_, largest_margin_);
-  pairs_.build(particles, options.wrap, margin_, history_, list_rank_.data());
-  walls_.build(particles, pairs_, places_, margin_, 1, history_, list_rank_.data());
+  pairs_.build(particles, options.wrap, margin_, history_, list_rank_.data(), largest_pair_gap_);
+  walls_.build(particles, pairs_, places_, margin_, 1, history_, list_rank_.data(), largest_wall_gap_);
   const Record* s = particles.spheres();
   for (std::uint32_t k = 0; k < spheres; ++k) {
     list_rank_[k] = k;
@@ -255,7 +283,7 @@ void Engine::rebuild_if_stale(double dt) {
     if (device_)
       device_->build_walls(2);
     else
-      walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr);
+      walls_.build(particles, pairs_, places_, margin_, 2, history_, nullptr, largest_wall_gap_);
     if (rest_) rest_relist(dt);
   }
   times_.neighbour += now_seconds() - start;

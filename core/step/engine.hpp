@@ -172,6 +172,8 @@ class Engine {
   void build_lists(double dt, bool reorder);
   void wrap_positions();
   void check_periodic_lengths() const;
+  /// Of the spheres there are: gaps at which laws act.
+  void measure_gaps();
   void place_parts(double dt, std::vector<PartPlace>& places);
   bool parts_left_margin() const;
   template <class Precision>
@@ -248,6 +250,8 @@ class Engine {
   void rest_save(StateWriter& out) const;
   void rest_load(const StateReader& in);
   bool one_material() const;
+  /// The spheres of entry e are less than that gap apart, m; 0: they touch.
+  bool nearer_than(std::size_t e, double gap) const;
   /// Threads worth waking: no more than there are chunks.
   int team() const;
   const LawList& law(std::uint32_t a, std::uint32_t b) const;
@@ -277,6 +281,9 @@ class Engine {
   EngineTimes times_;
   bool stale_ = true, uniform_ = false;
   double smallest_margin_ = 0, largest_margin_ = 0, cell_ = 0;
+  // Gaps at which laws act between spheres, and spheres and parts, of the largest spheres: m, in the order of laws.
+  std::vector<double> pair_gaps_, wall_gaps_;
+  double largest_pair_gap_ = 0, largest_wall_gap_ = 0;
   std::uint64_t rebuilds_ = 0, sorted_at_ = 0, touching_ = 0;
   bool count_changed_ = true;
   double largest_overlap_ = 0;

@@ -122,6 +122,14 @@ struct alignas(64) Engine::ChunkResult {
 /// lists were built if that is no place: "velocity y, spin x, at (0, 0, 0.1) m".
 std::string bad_motion(const Record& particle, const Vec3& listed);
 
+/// Rows of a block that touch; others are within reach of a law.
+template <class Real>
+std::uint32_t touching_rows(BlockScratchOf<Real>& block, std::uint32_t rows) {
+  std::uint32_t count = 0;
+  for (std::uint32_t k = 0; k < rows; ++k) count += block.in(CALX_IN_OVERLAP)[k] > 0;
+  return count;
+}
+
 inline double now_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

@@ -59,6 +59,11 @@ struct PairScan {
   std::size_t width;      // values of an entry
   const void* sums;       // Sum of the precision
   const Wrap* wrap;       // null where nothing is periodic
+  /// Null: pairs are found that touch. Else also those with a gap below gaps[material_i * materials + material_j], m.
+  const double* gaps;
+  std::uint32_t materials;
+  const std::uint32_t* material;  // per particle
+  const std::uint32_t* owner;     // per sphere, its particle; null: each its own
   /// Null: every entry from next_entry to last_entry is looked at. Else i, j, chosen (entries relative to first_entry)
   /// and chosen_ordinal are lists of the entries to look at, next_entry and last_entry count in these lists, and three
   /// spare numbers follow each of them.

@@ -107,6 +107,8 @@ Engine::OnDevice::Numbers Engine::OnDevice::numbers(double dt) const {
   n.low = o.domain.lo;
   n.high = o.domain.hi;
   n.length = o.wrap.length;
+  n.half_pair_gap = 0.5 * engine_.largest_pair_gap_;
+  n.wall_gap = engine_.largest_wall_gap_;
   for (std::size_t k = 0; k < 3; ++k) n.periodic[k] = o.wrap.periodic[k];
   n.spheres = static_cast<std::uint32_t>(engine_.particles.sphere_count());
   n.particles = static_cast<std::uint32_t>(engine_.particles.count());

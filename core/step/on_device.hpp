@@ -60,6 +60,7 @@ struct Engine::OnDevice {
   void send();
   void send_shapes();
   void send_particles();
+  void send_gaps();
   void send_lists();
   void send_sums();
   void send_table(const StepTable& table, std::size_t first, std::size_t count);

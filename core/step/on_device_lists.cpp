@@ -62,7 +62,7 @@ std::size_t Engine::OnDevice::make_levels(const Numbers& n, Vec3& origin) {
     m.reserve(m.classes, class_count * sizeof(std::uint32_t));
     device_->zero(m.classes, class_count * sizeof(std::uint32_t));
     device_->launch(m.count_classes, n.spheres,
-                    arguments(n.spheres, spheres, m.owner, m.margin, class_count, m.bounds, m.classes));
+                    arguments(n, spheres, m.owner, m.margin, class_count, m.bounds, m.classes));
     m.take(m.classes, counts);
   }
   std::vector<ReachClasses::Class> found(class_count);
@@ -190,6 +190,7 @@ void Engine::OnDevice::size_step() {
 
 void Engine::OnDevice::build_lists(double dt, bool reorder) {
   send();
+  send_gaps();
   Memory& m = *memory_;
   Numbers n = numbers(dt);
   m.forget_graphs();

@@ -33,6 +33,7 @@ inline std::size_t runs_of(std::size_t n) { return (n + 63) / 64; }
 struct Engine::OnDevice::Numbers {
   double dt, overlap_limit;
   Vec3 gravity, low, high, length;
+  double half_pair_gap, wall_gap;
   std::uint32_t periodic[3];
   std::uint32_t spheres, particles, entries, wall_rows, chunks, parts, materials, columns, ledger, forces, part_stride;
 };
@@ -52,8 +53,8 @@ struct Engine::OnDevice::Memory {
       fill_cells, search_pairs, sort_pairs, note_incoming, sort_incoming, carry_pairs, search_parts, carry_rows;
 
   // Of the case.
-  DeviceBuffer law_of, law_numbers, force_numbers, odd, shapes, triangles, edges, vertices, inwards, directions, axes,
-      segments, points, alongs, trees, nodes, tree_elements;
+  DeviceBuffer law_of, law_numbers, gaps, force_numbers, odd, shapes, triangles, edges, vertices, inwards, directions,
+      axes, segments, points, alongs, trees, nodes, tree_elements;
   // Of particles and their spheres. host_rank: rank of each particle in the host's columns.
   DeviceBuffer body, member, turn, wrench, equal_radius, inertia, first_sphere, owner, arms, sphere_material, margin,
       listed, list_rank, host_rank;

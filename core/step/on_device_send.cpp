@@ -128,8 +128,15 @@ void Engine::OnDevice::send_particles() {
   m.put(m.owner, p.owner);
 }
 
+void Engine::OnDevice::send_gaps() {
+  std::vector<double> gaps = engine_.pair_gaps_;
+  gaps.insert(gaps.end(), engine_.wall_gaps_.begin(), engine_.wall_gaps_.end());
+  memory_->put(memory_->gaps, gaps);
+}
+
 // Lists that the host has built, of a checkpoint.
 void Engine::OnDevice::send_lists() {
+  send_gaps();
   Memory& m = *memory_;
   const PairList& pairs = engine_.pairs_;
   const std::size_t n = engine_.particles.sphere_count();

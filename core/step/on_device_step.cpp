@@ -44,11 +44,11 @@ void Engine::OnDevice::launch_rest_of_step(const Numbers& n) {
   const std::uint64_t stride = wall_stride_;
   d.launch(m.pair_contacts, n.entries,
            arguments(n, spheres, m.sphere_material, m.pair_i, m.pair_j, m.pair_touching, m.pair_history, m.law_of,
-                     m.law_numbers, m.times, m.pair_out, m.pair_share, m.pair_energy, m.flags));
+                     m.law_numbers, m.gaps, m.times, m.pair_out, m.pair_share, m.pair_energy, m.flags));
   d.launch(m.find_wall_contacts, n.wall_rows,
-           arguments(n, spheres, m.row_sphere, m.row_part, m.first_element, m.elements, m.parts, m.shapes, m.triangles,
-                     m.edges, m.vertices, m.inwards, m.directions, m.axes, m.segments, m.points, m.alongs,
-                     m.wall_touching, m.wall_normals, m.wall_counts, m.wall_touches, m.flags));
+           arguments(n, spheres, m.sphere_material, m.row_sphere, m.row_part, m.first_element, m.elements, m.parts,
+                     m.gaps, m.shapes, m.triangles, m.edges, m.vertices, m.inwards, m.directions, m.axes, m.segments,
+                     m.points, m.alongs, m.wall_touching, m.wall_normals, m.wall_counts, m.wall_touches, m.flags));
   d.launch(m.wall_contacts, n.wall_rows * kWallContacts,
            arguments(n, spheres, m.sphere_material, m.row_sphere, m.row_part, m.parts, m.wall_counts, m.wall_touches,
                      m.wall_history, stride, m.law_of, m.law_numbers, m.times, m.wall_out, m.wall_share, m.wall_energy,

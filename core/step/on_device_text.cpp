@@ -6,6 +6,7 @@ ModuleText step_text(const LawProgram& laws, const ForceProgram& forces, bool mi
   ModuleText text;
   text.label = "step";
   text.fast = fast;
+  if (laws.reaches) text.defines.push_back("CALX_REACHES=1");
   text.add("world.h");
   if (mixed) {
     text.add_laws(32, laws.laws);

@@ -38,6 +38,11 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
   scan.history = pairs_.history.data();
   scan.width = history_.columns;
   scan.wrap = options.wrap.any() ? &options.wrap : nullptr;
+  const bool reaches = largest_pair_gap_ > 0;
+  scan.gaps = reaches ? pair_gaps_.data() : nullptr;
+  scan.materials = material_count;
+  scan.material = particles.material.data();
+  scan.owner = particles.has_clumps ? particles.owner.data() : nullptr;
   scan.first_entry = scan.next_entry = chunk.first_entry;
   scan.last_entry = chunk.last_entry;
   scan.last_sphere = chunk.last_sphere;
@@ -54,7 +59,7 @@ void Engine::pair_pass(std::size_t c, Worker& w, double t, double dt) {
   }
   for (bool more = true; more;) {
     more = kernels.find(scan, w.found);
-    result.touching += w.found.count;
+    if (!reaches) result.touching += w.found.count;
     if (w.found.count == 0) continue;
     auto list_of = [&](std::uint32_t row) -> const LawList& {
       return law(particles.material[particles.owner_of(w.found.i[row])],
@@ -165,6 +170,7 @@ void Engine::take_pairs(std::size_t c, const PairBlock& pairs, PairWork<Precisio
   ChunkResult& result = results_[c];
   auto& block = work.scratch;
   const std::uint32_t n = pairs.count;
+  if (largest_pair_gap_ > 0) result.touching += touching_rows(block, n);
   for (std::uint32_t k = 0; record && k < n; ++k) {
     const double share = 0.5 * block.in(CALX_IN_OVERLAP)[k] / block.in(CALX_IN_R_EFF)[k];
     if (share <= result.largest_overlap) continue;

@@ -114,6 +114,12 @@ void Engine::rest_change(std::vector<std::uint32_t>& wake, const std::vector<std
   }
 }
 
+bool Engine::nearer_than(std::size_t e, double gap) const {
+  const Record &a = particles.spheres()[pairs_.i[e]], &b = particles.spheres()[pairs_.j[e]];
+  const double limit = a.r + b.r + gap;
+  return norm2(options.wrap.nearest(position(a) - position(b))) < limit * limit;
+}
+
 void Engine::rest_capture(const std::vector<std::uint32_t>& some, const std::vector<std::uint32_t>& changed,
                           double dt) {
   Rest& rest = *rest_;
@@ -169,7 +175,6 @@ void Engine::rest_capture_pairs(std::size_t c, Worker& w, double dt) {
   const Rest& rest = *rest_;
   const Chunk& chunk = pairs_.chunks[c];
   rest_->walks[c].shares.clear();
-  const Record* s = particles.spheres();
   PairBlock& block = w.picked;
   const LawList* list = nullptr;
   block.count = 0;
@@ -186,8 +191,7 @@ void Engine::rest_capture_pairs(std::size_t c, Worker& w, double dt) {
     if (!pairs_.touching[e]) continue;
     const std::uint32_t i = pairs_.i[e], j = pairs_.j[e], a = particles.owner_of(i), b = particles.owner_of(j);
     if (!((rest.mark[a] | rest.mark[b]) & Rest::affected) || !rest.asleep[a] || !rest.asleep[b]) continue;
-    const double reach = s[i].r + s[j].r;
-    if (norm2(options.wrap.nearest(position(s[i]) - position(s[j]))) >= reach * reach) continue;
+    if (!nearer_than(e, pair_gaps_[particles.material[a] * material_count + particles.material[b]])) continue;
     const LawList& own = law(particles.material[a], particles.material[b]);
     if (block.count == kBlockRows || &own != list) flush();
     list = &own;
@@ -210,7 +214,7 @@ void Engine::rest_capture_walls(std::size_t c, Worker& w, double dt) {
 void Engine::rest_take_walls(std::size_t c, Worker& w, std::uint32_t n) {
   RestWalk& walk = rest_->walks[c];
   BlockScratch& block = w.in_double.scratch;
-  walk.wall_contacts += n;
+  walk.wall_contacts += touching_rows(block, n);
   for (std::uint32_t k = 0; k < n; ++k) {
     if (options.ledger) walk.wall_elastic += block.out(CALX_OUT_ELASTIC)[k];
     Wrench on_sphere;
@@ -244,7 +248,7 @@ void Engine::rest_entries(std::size_t c) {
     const std::uint32_t i = pairs_.i[e], j = pairs_.j[e];
     const bool leaves = j >= chunk.last_sphere;
     if (asleep[particles.owner_of(i)] && asleep[particles.owner_of(j)]) {
-      walk.pair_contacts += pairs_.touching[e];
+      walk.pair_contacts += pairs_.touching[e] && (largest_pair_gap_ == 0 || nearer_than(e, 0));
     } else {
       walk.i.push_back(i);
       walk.j.push_back(j);

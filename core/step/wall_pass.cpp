@@ -37,7 +37,10 @@ void Engine::wall_pass(std::size_t c, Worker& w, double t, double dt, bool captu
     const Vec3 local = part.pose.to_part(centre);
     SurfacePoint* found = w.found_points;
     const std::uint32_t first = walls_.first_element[row];
-    const std::size_t count = part.surface->closest(local, a.r, walls_.elements.data() + first,
+    const double gap = largest_wall_gap_ > 0
+                           ? wall_gaps_[particles.material[particles.owner_of(sphere)] * material_count + part.material]
+                           : 0;
+    const std::size_t count = part.surface->closest(local, a.r + gap, walls_.elements.data() + first,
                                                     walls_.first_element[row + 1] - first, found, kWallContacts);
     const std::size_t slot0 = row * kWallContacts;
     std::uint8_t* touch = walls_.touching.data() + slot0;
@@ -142,7 +145,7 @@ void Engine::evaluate_walls(std::size_t c, Worker& w, const LawList& list, doubl
   const std::uint32_t n = w.wall_count;
   w.wall_count = 0;
   block.count = n;
-  if (!capture) result.touching += n;
+  if (!capture) result.touching += touching_rows(block, n);
   for (std::uint32_t h = 0; h < list.state_count; ++h) {
     const double* column = walls_.history.data() + h * walls_.stride;
     double* state = block.state(h);

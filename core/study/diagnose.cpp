@@ -158,7 +158,7 @@ class Diagnoser {
     d_.model = infer::linearise(d_.measured.observables, effects, *simulator_, d_.options);
     keep_foreign_base();
     drop_silent();
-    d_.bank = infer::make_bank(d_.model.observables);
+    d_.bank = infer::make_bank(d_.model.observables, d_.model.base);
     infer::refine(d_.model, d_.bank, *simulator_, d_.options);
     refine_leaders();
     if (d_.measured.split_repeats)
@@ -312,8 +312,7 @@ class Diagnoser {
       d_.before = vector_of(d_.confirmation.before), d_.after = vector_of(d_.confirmation.after);
     if (!d_.explained.empty()) return;
     for (const infer::UnknownTerm& t : d_.terms) {
-      const infer::Term& term = d_.bank.terms[t.term];
-      d_.after.segment(m.observables.first(term.block), term.columns.rows()) += term.columns * t.coefficients;
+      d_.after += infer::columns_of(d_.bank.terms[t.term], m.observables) * t.coefficients;
     }
   }
 

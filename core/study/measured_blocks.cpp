@@ -91,6 +91,12 @@ MeasuredBlocks measured_blocks(const Study& study) {
     out.readings.push_back(o);
     blocks.push_back(block);
   }
+  // What is delivered cycle by cycle adds up to what the vessel holds, so that a change of the one shows in the other.
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    for (std::size_t k = 0; k < blocks.size() && blocks[b].kind == "mass-after-cycles" && blocks[b].x.size() > 1; ++k)
+      if (blocks[k].kind == "mass-per-cycle" && blocks[k].x.size() > 1 &&
+          out.readings[k].unit == out.readings[b].unit && out.readings[k].case_name == out.readings[b].case_name)
+        blocks[b].sums = blocks[k].name;
   out.has_hold_out = std::any_of(blocks.begin(), blocks.end(), [](const Block& b) { return b.hold.size() != 0; });
   if (out.has_hold_out) return out;
   for (std::size_t b = 0; b < blocks.size(); ++b)

@@ -157,7 +157,7 @@ class Foretelling {
       }
     }
     const Matrix changed = simulator.run(points);
-    local.partner = changed.col(0);
+    local.partner = local.common_run = changed.col(0);
     for (std::size_t k = 0; k < owner.size(); ++k) {
       const double step = options.step_scales * d_.model.effects[owner[k].first].scale;
       e.signatures[owner[k].first].col(owner[k].second) =

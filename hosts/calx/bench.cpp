@@ -35,12 +35,7 @@ std::string fill_case(const BenchOptions& o) {
 }
 
 void run_bench(BenchOptions& o, const std::vector<std::string>& set) {
-  for (const std::string& text : set) {
-    const auto at = text.find('=');
-    if (at == std::string::npos || text[0] != '/')
-      throw Error(Fault::usage, "--set " + text + ": expected /json/pointer=value, for instance /neighbour/skin=1e-4");
-    o.overrides.emplace_back(text.substr(0, at), text.substr(at + 1));
-  }
+  for (const std::string& text : set) o.overrides.push_back(split_override(text, "/neighbour/skin=1e-4"));
   if (o.precision != "double" && o.precision != "mixed")
     throw Error(Fault::usage, "--precision " + o.precision + ": \"double\" or \"mixed\"");
   if (o.name == "law") {

@@ -38,7 +38,7 @@ LastWords::LastWords(const std::string& folder) {
   const std::string after =
       "; what was computed is in " + folder +
       ", and --resume goes on from its last checkpoint. calx plugin check PATH tells which plugin "
-      "of the case does not keep its promises\n";
+      "of the case does not keep its promises, and --safe-mode runs without those that did not come with calx\n";
   crashed_text = "\ncalx: the process crashed in the middle of a run, in a plugin or in calx itself" + after;
   exited_text = "\ncalx: a plugin ended the process in the middle of a run, which no plugin may do" + after;
   static const int registered = std::atexit(on_exit_of_process);

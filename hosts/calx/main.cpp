@@ -12,11 +12,13 @@
 #include "base/version.hpp"
 #include "bench.hpp"
 #include "calibrate.hpp"
-#include "calx/abi.h"
+#include "compare.hpp"
 #include "diagnose.hpp"
 #include "last_words.hpp"
+#include "law.hpp"
 #include "options.hpp"
 #include "paper.hpp"
+#include "plugin/tables.hpp"
 #include "plugin_commands.hpp"
 #include "progress.hpp"
 #include "report/calibration_page.hpp"
@@ -37,21 +39,12 @@ void catch_signals() {
   std::signal(SIGTERM, on_signal);
 }
 
-/// "/time/end=2.0" -> pointer and value.
-std::pair<std::string, std::string> split_override(const std::string& text) {
-  const auto at = text.find('=');
-  if (at == std::string::npos || text.empty() || text[0] != '/')
-    throw calx::Error(calx::Fault::usage,
-                      "--set " + text + ": expected /json/pointer=value, for instance /time/end=2.0");
-  return {text.substr(0, at), text.substr(at + 1)};
-}
-
 struct CaseFlags {
   std::vector<std::string> set, plugin_path;
   calx::RunOptions run;
   std::string device = "auto", precision = "double", arithmetic = "exact";
   long long seed = -1;
-  bool quiet = false, json = false, no_report = false, require_pins = false;
+  bool quiet = false, json = false, no_report = false, require_pins = false, safe_mode = false;
 
   void add_common(CLI::App& app) {
     app.add_option("case", run.case_path, "case file (JSON)")->required();
@@ -64,7 +57,9 @@ struct CaseFlags {
     app.add_option("--arithmetic", arithmetic,
                    "exact, or fast: devices may contract a * b + c, to other last digits than the processor's");
     app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(calx::whole_number());
-    app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+    auto* folders = app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+    app.add_flag("--safe-mode", safe_mode, "load only plugins that came with Calx: none of yours, none beside the case")
+        ->excludes(folders);
     app.add_flag("--require-pins", require_pins, "load only plugins whose SHA-256 the case gives");
   }
   calx::RunOptions options() {
@@ -75,10 +70,11 @@ struct CaseFlags {
       throw calx::Error(calx::Fault::usage, "--arithmetic " + arithmetic + ": expected \"exact\" or \"fast\"");
     run.simulation.fast = arithmetic == "fast";
     run.simulation.mixed = precision == "mixed";
-    for (const auto& s : set) run.overrides.push_back(split_override(s));
+    for (const auto& s : set) run.overrides.push_back(calx::split_override(s, "/time/end=2.0"));
     if (seed >= 0) run.overrides.emplace_back("/seed", std::to_string(seed));
     run.simulation.plugin_path = plugin_path;
     run.simulation.require_pins = require_pins;
+    run.simulation.safe_mode = safe_mode;
     return run;
   }
 };
@@ -156,8 +152,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Calx: how powder fills a canister, by discrete elements", "calx"};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("calx ") + calx::version() + " (" + calx::git_revision() + "), ABI " +
-                                        std::to_string(CALX_ABI_MAJOR) + "." + std::to_string(CALX_ABI_MINOR) +
-                                        " draft " + std::to_string(CALX_ABI_DRAFT));
+                                        calx::abi_version());
 
   CaseFlags run_flags, check_flags;
   auto* run_command = app.add_subcommand("run", "run a case and write its report");
@@ -208,7 +203,9 @@ int main(int argc, char** argv) {
   });
 
   calx::add_plugin_command(app);
+  calx::add_compare_command(app);
   calx::add_bench_command(app);
+  calx::add_law_command(app);
   calx::add_calibrate_command(app, run_flags.json, stop_requested, catch_signals);
   calx::add_diagnose_command(app, run_flags.json, stop_requested, catch_signals);
   calx::add_paper_command(app);

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/nearest.hpp"
 
 namespace calx {
@@ -28,6 +29,13 @@ CLI::Validator at_least(double least, bool whole, const std::string& right) {
 CLI::Validator whole_above_zero() { return at_least(1, true, "a whole number above 0"); }
 CLI::Validator whole_number() { return at_least(0, true, "a whole number, 0 or more"); }
 CLI::Validator zero_or_more() { return at_least(0, false, "a number, 0 or more"); }
+
+std::pair<std::string, std::string> split_override(const std::string& text, const std::string& example) {
+  const auto at = text.find('=');
+  if (at == std::string::npos || text[0] != '/')
+    throw Error(Fault::usage, "--set " + text + ": expected /json/pointer=value, for instance " + example);
+  return {text.substr(0, at), text.substr(at + 1)};
+}
 
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   const CLI::App* at = &app;

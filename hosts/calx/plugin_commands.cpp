@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/nearest.hpp"
 #include "conformance/conformance.hpp"
 #include "options.hpp"
 #include "plugin/plugin.hpp"
@@ -85,14 +86,11 @@ void add_plugin_command(CLI::App& app) {
 
   auto* fresh = command->add_subcommand("new", "write a plugin project that is ready to build");
   fresh->add_option("name", name, "its name: lower-case letters, digits and -, as in wet-hertz")->required();
-  fresh->add_option("--kind", kind, "contact-law, geometry, motion, particle-force or sensor")->required();
+  fresh->add_option("--kind", kind, "one of " + quoted_list(new_plugin_kinds()))->required();
   fresh->add_option("--in", folder, "folder to write it into (default: here)");
   fresh->callback([] {
     for (const std::string& file : new_plugin(name, kind, folder)) std::printf("%s\n", file.c_str());
-    std::printf(
-        "build it: cd %s && cmake -S . -B build -DCMAKE_PREFIX_PATH=<where Calx is installed> && cmake --build build "
-        "&& ctest --test-dir build\n",
-        (folder + "/" + name).c_str());
+    print(new_plugin_advice(name, kind, folder));
   });
 }
 

@@ -23,6 +23,9 @@ CALX_LAW_TABLES(bad_spring)
 #ifndef BAD_STABLE
 #define BAD_STABLE 0.1 * sqrt(m_eff / pair[0])
 #endif
+#ifndef BAD_REACH
+#define BAD_REACH 0
+#endif
 #ifndef BAD_SHA256
 #define BAD_SHA256 sha256
 #endif
@@ -62,7 +65,7 @@ static const calx_contact_law law = {sizeof(calx_contact_law),
                                      bad_spring_state_fields,
                                      0,
                                      stable_dt,
-                                     0,
+                                     BAD_REACH,
                                      "bad_spring",
                                      source,
                                      sizeof source - 1,

@@ -1,4 +1,4 @@
-/* The table is of another draft. */
+/* The table is of a draft. */
 #define BAD_ID "test.wrong-draft"
 #define BAD_DRAFT 7
 #include "bad_plugin.h"

@@ -1,8 +1,10 @@
 // A block through a list of laws written here: what each law sees, and how their outputs add.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdint>
 
+#include "base/error.hpp"
 #include "compute/law_list.hpp"
 
 using namespace calx;
@@ -36,6 +38,17 @@ void CALX_CALL follower(const calx_block_f64* b) {
     for (int d = 6; d < 10; ++d) b->out[d][k] = 1;
   }
 }
+
+/// f = pair[0] sqrt(overlap), no number where the spheres do not touch; one history column.
+void CALX_CALL root(const calx_block_f64* b) {
+  seen.push_back(*b);
+  for (std::uint32_t k = 0; k < b->count; ++k) {
+    for (int d = 0; d < 10; ++d)
+      if (b->out[d]) b->out[d][k] = b->pair[0] * std::sqrt(b->in[CALX_IN_OVERLAP][k]);
+    b->state[k] *= 2;
+  }
+}
+double CALX_CALL millimetre(const double* pair, double r_i, double) { return pair[0] * r_i; }
 
 constexpr std::uint32_t kNormal = 7u << CALX_IN_NX;
 
@@ -134,4 +147,39 @@ TEST_CASE("columns of a block stand on cache lines and hold finite numbers beyon
   }
   CHECK(reinterpret_cast<std::uintptr_t>(b.scratch.state(3)) % 64 == 0);
   CHECK(b.scratch.state(3)[kBlockStride - 1] == 0);
+}
+
+TEST_CASE("rows apart: terms without reach do nothing, history without CALX_FIELD_KEEP_APART is as new") {
+  Bench b;
+  calx_contact_law root_table = b.spring_table, wide_table = b.follower_table;
+  root_table.eval_f64 = &root;
+  root_table.state_count = 1;
+  wide_table.reach = &millimetre;
+  wide_table.state_count = 2;
+  b.add(root_table, 3, 1);
+  b.add(wide_table, 0.5, 2);
+  b.list.reaches = true;
+  b.list.preset = {7, 0, 5};
+  b.list.keep = {0, 1, 0};
+  b.fill(40);
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    if (k % 2) b.scratch.in(CALX_IN_OVERLAP)[k] *= -1;
+    for (std::uint32_t s = 0; s < 3; ++s) b.scratch.state(s)[k] = 20 + 10 * s;
+  }
+  evaluate_block(b.list, b.scratch, 1e-6, 0, true);
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    CAPTURE(k);
+    const double f = k % 2 ? 0 : 3 * std::sqrt(1e-6 * (k + 1));
+    // Of the first law along n, once more half of it.
+    const double sum = f + 0.5 * 0.6 * f * (0.6 - 0.8);
+    CHECK(std::fabs(b.scratch.out(CALX_OUT_FX)[k] - sum) <= 1e-14 * f);
+    CHECK(b.scratch.out(CALX_OUT_MX)[k] == f);
+    CHECK(b.scratch.out(CALX_OUT_PLASTIC)[k] == f + 1);
+    CHECK(b.scratch.state(0)[k] == (k % 2 ? 7 : 40));
+    CHECK(b.scratch.state(1)[k] == 40);
+    CHECK(b.scratch.state(2)[k] == (k % 2 ? 5 : 140));
+  }
+  CHECK(reach_of(b.list, 1e-3, 0) == 0.5e-3);
+  b.list.terms[1].pair_row = {-1};
+  CHECK_THROWS_WITH_AS(reach_of(b.list, 1e-3, 0), doctest::Contains("the reach of law "), Error);
 }

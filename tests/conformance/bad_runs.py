@@ -97,7 +97,7 @@ def main():
         # A law that is a text may lie beside the case.
         shutil.copy(SOURCE / "examples/third_party_law/spring.law.h", folder)
         (folder / "spring.plugin.json").write_text(json.dumps({
-            "calx_plugin": 1, "abi": {"major": 1, "minor": 0, "draft": 1}, "version": "1.0.0", "license": "MIT",
+            "calx_plugin": 1, "abi": {"major": 1, "minor": 0}, "version": "1.0.0", "license": "MIT",
             "plugins": [{"id": "org.me.spring", "kind": "calx.contact-law/1", "summary": "A text.",
                          "text": "spring.law.h", "stiffness": ["kn", "kt"]}]}))
         case = case_of("good", False)

@@ -106,6 +106,7 @@ TEST_CASE("what a law does wrong is found") {
            {"creates_energy", "energy", "more energy than was put in"},
            {"writes_past_the_rows", "blocks", "wrote outside of the "},
            {"too_long_a_step", "stable-step", "times the speed they met with"},
+           {"too_short_a_reach", "reach", "a wrench beyond its reach of 1e-05 m"},
            {"remembers_outside", "blocks", "other bits"},
            {"reads_what_it_did_not_ask_for", "finite", "crashed with SIGSEGV"},
        })

@@ -87,7 +87,12 @@ TEST_CASE("in the process a failed check is told as well") {
   CheckOptions options;
   options.only = "force-blocks";
   options.in_process = true;
-  CHECK(check_plugins(bad_folder("replaces_forces"), options).count(CheckOutcome::failed) == 1);
+  const CheckReport report = check_plugins(bad_folder("replaces_forces"), options);
+  CHECK(report.count(CheckOutcome::failed) == 1);
+  // The eye rests at the end.
+  const std::string text = check_text(report, true), last = "\nfailed: force-blocks of test.replaces-forces\n  ";
+  CHECK(text.find(last) > text.find("FAILED  force-blocks"));
+  CHECK(text.find(last) != std::string::npos);
 }
 
 TEST_CASE("the page holds every check, and the curves of a law") {

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "base/random.hpp"
+#include "diagnosis/common_practice.hpp"
 #include "diagnosis/experiments.hpp"
+#include "diagnosis/troubles.hpp"
 
 namespace calx::diagnosis {
 
@@ -48,27 +50,62 @@ Vector amplitude_of(const infer::Effect& effect, double strength, double sign, d
   return strength * effect.scale * (Vector(2) << std::cos(turn), std::sin(turn)).finished();
 }
 
+/// Distance of a single effect to its best imitation by another one.
+double separability(const Ruler& ruler, const Truth& truth, const Vector& without, const Forms& forms) {
+  const std::vector<infer::Effect> library = effect_library();
+  const Vector d = ruler(plant(truth.u, truth.amplitudes, {}, forms, 0) - without);
+  double least = d.norm();
+  for (std::size_t e = 0; e < library.size(); ++e) {
+    if (e == truth.effects[0]) continue;
+    Matrix g(without.size(), library[e].components);
+    for (int k = 0; k < library[e].components; ++k) {
+      std::vector<Vector> amplitudes(effect_count);
+      amplitudes[e] = 0.5 * library[e].scale * Vector::Unit(library[e].components, k);
+      g.col(k) = ruler(simulate(truth.u, amplitudes) - simulate(truth.u, {}));
+    }
+    const Vector q = g.colPivHouseholderQr().solve(d);
+    if (library[e].one_sided && q[0] < 0) continue;
+    least = std::min(least, (d - g * q).norm());
+  }
+  return least;
+}
+
 }  // namespace
 
-Study make_study(std::uint64_t seed) {
+const char* trouble_name(Trouble trouble) {
+  constexpr std::array<const char*, static_cast<std::size_t>(Trouble::count)> names = {
+      "none",     "few observables", "far powder",      "gross errors",
+      "wrong sd", "weak effects",    "inert covariate", "like causes"};
+  return names[static_cast<std::size_t>(trouble)];
+}
+
+Trouble trouble_of(std::uint64_t study) {
+  return static_cast<Trouble>(1 + study / 8 % (static_cast<std::uint64_t>(Trouble::count) - 1));
+}
+
+Study make_study(std::uint64_t seed, Trouble trouble) {
   constexpr std::array<Kind, 8> mix = {Kind::control, Kind::single, Kind::outside, Kind::single,
                                        Kind::control, Kind::single, Kind::outside, Kind::pair};
   const std::vector<infer::Effect> library = effect_library();
   Random random(seed, 11);
   Vector powder_of_day(line::parameters);
   for (double& u : powder_of_day) u = 0.8 * random.normal();
-  Study study{{}, {}, {}, Forms(random)};
+  if (trouble == Trouble::far_powder) take_far(random, powder_of_day);
+  Study study{trouble, {}, {}, {}, Forms(random)};
   const Forms& forms = study.forms;
   Truth& truth = study.truth;
-  truth.kind = mix[seed % mix.size()];
+  truth.kind = trouble == Trouble::like_causes ? Kind::single : mix[seed % mix.size()];
   truth.u = powder_of_day;
   truth.amplitudes.resize(effect_count);
   const Ruler ruler(truth.u);
   const Vector without = plant(truth.u, {}, {}, forms, 0);
 
   // The strength that gives the delta drawn, by bisection.
+  const double weakest = trouble == Trouble::weak ? 0.5 : 3, strongest = trouble == Trouble::weak          ? 2
+                                                                         : trouble == Trouble::like_causes ? 10
+                                                                                                           : 15;
   const auto strength = [&](auto signal) {
-    const double wanted = std::exp(random.uniform(std::log(3), std::log(15)));
+    const double wanted = std::exp(random.uniform(std::log(weakest), std::log(strongest)));
     double low = 1e-3, high = 20;
     for (int k = 0; k < 15; ++k) {
       const double middle = std::sqrt(low * high);
@@ -86,7 +123,14 @@ Study make_study(std::uint64_t seed) {
     truth.effects.push_back(e);
     truth.amplitudes[e] = amplitude_of(library[e], s, sign, turn);
   };
-  if (truth.kind == Kind::single || truth.kind == Kind::pair) plant_effect(random.bits() % effect_count);
+  const auto lay_out = [&](std::size_t e) {
+    truth.effects.clear();
+    truth.amplitudes.assign(effect_count, {});
+    plant_effect(e);
+    if (truth.kind == Kind::single) truth.separability = separability(ruler, truth, without, forms);
+  };
+  if (truth.kind == Kind::single || truth.kind == Kind::pair) lay_out(random.bits() % effect_count);
+  while (trouble == Trouble::like_causes && truth.separability > 3) lay_out(random.bits() % effect_count);
   if (truth.kind == Kind::pair) {
     std::size_t other = truth.effects[0];
     while (other == truth.effects[0]) other = random.bits() % effect_count;
@@ -108,23 +152,6 @@ Study make_study(std::uint64_t seed) {
 
   const Vector mean = plant(truth.u, truth.amplitudes, truth.strange, forms, 0);
   if (truth.kind != Kind::control) truth.delta = ruler(mean - without).norm();
-  if (truth.kind == Kind::single) {
-    truth.separability = truth.delta;
-    const Vector d = ruler(mean - without);
-    for (std::size_t e = 0; e < library.size(); ++e) {
-      if (e == truth.effects[0]) continue;
-      Matrix g(mean.size(), library[e].components);
-      for (int k = 0; k < library[e].components; ++k) {
-        std::vector<Vector> amplitudes(effect_count);
-        amplitudes[e] = 0.5 * library[e].scale * Vector::Unit(library[e].components, k);
-        g.col(k) = ruler(simulate(truth.u, amplitudes) - simulate(truth.u, {}));
-      }
-      const Vector q = g.colPivHouseholderQr().solve(d);
-      if (library[e].one_sided && q[0] < 0) continue;
-      truth.separability = std::min(truth.separability, (d - g * q).norm());
-    }
-  }
-
   study.observables = line_observables();
   const Vector fit = mean + plant_noise(random);
   const Vector hold = plant(truth.u, truth.amplitudes, truth.strange, forms, 1) + plant_noise(random);
@@ -134,56 +161,14 @@ Study make_study(std::uint64_t seed) {
     const int first = study.observables.first(b), n = study.observables.size(b);
     block.fit = fit.segment(first, n), block.hold = hold.segment(first, n);
     study.bias.segment(first, n) = 0.3 * block.sd * random.normal();
-    const double error = std::exp(0.15 * random.normal());
+    const double error = std::exp((trouble == Trouble::wrong_sd ? 0.5 : 0.15) * random.normal());
     truth.noise_error.push_back(1 / error);
     block.sd *= error;
     block.autocorrelation *= random.uniform(0.6, 1.2);
   }
+  if (trouble == Trouble::gross_errors) add_gross_errors(random, study.observables);
   return study;
 }
-
-namespace {
-
-/// Nuisances from bench tests alone, then the effect that cuts the squared error of everything most.
-void common_practice(const Study& study, LineSimulator& simulator, Outcome& outcome) {
-  const infer::Observables& all = study.observables;
-  const Vector sd = all.sd();
-  Vector y(all.rows());
-  for (std::size_t b = 0; b < all.blocks.size(); ++b) y.segment(all.first(b), all.size(b)) = all.blocks[b].fit;
-  const Vector zero = Vector::Zero(line::parameters);
-  Matrix j(all.rows(), line::parameters);
-  for (int k = 0; k < line::parameters; ++k)
-    j.col(k) = (simulate(Vector::Unit(line::parameters, k), {}) - simulate(-Vector::Unit(line::parameters, k), {})) / 2;
-  Matrix normal = 0.01 * Matrix::Identity(line::parameters, line::parameters);
-  Vector pull = zero;
-  const Vector base = simulate(zero, {});
-  for (BlockIndex b : {angle_drained, angle_static, density, compression, wall})
-    for (int k = all.first(b); k < all.first(b) + all.size(b); ++k) {
-      normal += j.row(k).transpose() * j.row(k) / (sd[k] * sd[k]);
-      pull += j.row(k).transpose() * (y[k] - base[k]) / (sd[k] * sd[k]);
-    }
-  const Vector u = normal.ldlt().solve(pull);
-  const Vector r = (y - simulator.run({{u, -1, {}, 77}}).col(0)).cwiseQuotient(sd);
-  const std::vector<infer::Effect> library = effect_library();
-  double best = 0.95 * r.squaredNorm();
-  std::size_t cause = effect_count;
-  for (std::size_t e = 0; e < library.size(); ++e) {
-    Matrix g(r.size(), library[e].components);
-    for (int k = 0; k < library[e].components; ++k) {
-      std::vector<Vector> amplitudes(effect_count);
-      amplitudes[e] = library[e].scale * Vector::Unit(library[e].components, k);
-      g.col(k) = (simulate(u, amplitudes) - simulate(u, {})).cwiseQuotient(sd);
-    }
-    const Vector q = g.colPivHouseholderQr().solve(r);
-    if (library[e].one_sided && q[0] < 0) continue;
-    const double left = (r - g * q).squaredNorm();
-    if (left < best) best = left, cause = e;
-  }
-  outcome.common_practice_named = cause != effect_count;
-  outcome.common_practice_right = study.truth.effects == std::vector<std::size_t>{cause};
-}
-
-}  // namespace
 
 namespace {
 
@@ -210,9 +195,11 @@ void ask_next(const Study& study, const infer::LinearModel& model, const infer::
 
 }  // namespace
 
-Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken broken, double scatter) {
-  Study study = make_study(seed);
+Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken broken, double scatter,
+                       Trouble trouble) {
+  Study study = make_study(seed, trouble);
   Outcome outcome;
+  outcome.trouble = trouble;
   outcome.truth = study.truth;
   infer::Options options = given;
   options.seed = seed;
@@ -221,11 +208,14 @@ Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken b
   options.unknown_rival = broken != Broken::no_unknown;
   if (broken == Broken::fit_is_hold_out)
     for (infer::Block& block : study.observables.blocks) block.hold = block.fit;
-  LineSimulator simulator(0.8, seed * 2 + 1000003, study.bias, scatter);
-  infer::LinearModel model = infer::linearise(study.observables, effect_library(), simulator, options);
-  const infer::Bank bank = infer::make_bank(model.observables);
+  LineSimulator line_simulator(0.8, seed * 2 + 1000003, study.bias, scatter);
+  common_practice(study, line_simulator, outcome);
+  const int runs_before = line_simulator.runs();
+  TroubledSimulator simulator(line_simulator, trouble, study.observables);
+  infer::LinearModel model = infer::linearise(study.observables, simulator.library(), simulator, options);
+  const infer::Bank bank = infer::make_bank(model.observables, model.base);
   infer::refine(model, bank, simulator, options);
-  outcome.runs = simulator.runs();
+  outcome.runs = line_simulator.runs() - runs_before;
   if (broken == Broken::shuffled_signatures) {
     Random random(seed, 12);
     for (std::size_t e = model.signatures.size() - 1; e > 0; --e) {
@@ -239,14 +229,18 @@ Outcome diagnose_study(std::uint64_t seed, const infer::Options& given, Broken b
     }
   }
   outcome.diagnosis = infer::diagnose(model, bank, options);
+  if (options.unknown_rival) {
+    const infer::Term& term = bank.terms[outcome.diagnosis.posterior.discrepancy.term];
+    outcome.rival = term.family + " in " + model.observables.blocks[term.block].name;
+  }
   if (outcome.diagnosis.verdict == infer::Verdict::unknown) {
     const std::vector<infer::UnknownTerm> terms = infer::find_terms(model, bank, outcome.diagnosis, options);
     if (!terms.empty()) outcome.family = bank.terms[terms[0].term].family, outcome.stability = terms[0].stability;
   }
+  const bool whole = trouble != Trouble::few_observables && trouble != Trouble::inert_covariate;
   if (study.truth.kind == Kind::single && outcome.diagnosis.verdict == infer::Verdict::ambiguous &&
-      study.truth.delta <= 10)
+      study.truth.delta <= 10 && whole)
     ask_next(study, model, options, outcome);
-  common_practice(study, simulator, outcome);
   return outcome;
 }
 

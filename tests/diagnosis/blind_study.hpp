@@ -11,6 +11,22 @@ namespace calx::diagnosis {
 
 enum class Kind { control, single, pair, outside };
 
+/// What makes a study harder than the default.
+enum class Trouble {
+  none,
+  few_observables,  // no speed sweep, no flow by angle, no bed heights, no angle after the run
+  far_powder,       // two nuisance parameters 2 to 3 prior sd off
+  gross_errors,     // three numbers of each campaign 8 sd off
+  wrong_sd,         // declared sd wrong by a factor exp(0.5 N(0, 1)) per observable
+  weak,             // delta 0.5 to 2: below detection
+  inert_covariate,  // a logged temperature rises along the cycles, is offered as a cause, and does nothing
+  like_causes,      // the hidden effect has an imitation closer than 3
+  count
+};
+const char* trouble_name(Trouble trouble);
+/// Each in turn for eight studies, so that all kinds meet it.
+Trouble trouble_of(std::uint64_t study);
+
 /// What the generator knows.
 struct Truth {
   Kind kind = Kind::control;
@@ -25,6 +41,7 @@ struct Truth {
 };
 
 struct Study {
+  Trouble trouble = Trouble::none;
   Truth truth;
   infer::Observables observables;  // as declared, with both campaigns
   Vector bias;                     // numerical, of the simulator
@@ -34,16 +51,19 @@ struct Study {
 /// Ways to break the method, each of which must be seen in the table.
 enum class Broken { no, shuffled_signatures, no_recalibration, no_seed_scatter, no_unknown, fit_is_hold_out };
 
-/// Mix of kinds by seed: of eight, two controls, three single effects, two outside the library, one pair. Strengths are
-/// drawn so that delta is log-uniform in 3 to 15.
-Study make_study(std::uint64_t seed);
+/// Mix of kinds by seed: of eight, two controls, three single effects, two outside the library, one pair; with like
+/// causes, single effects only. Strengths are drawn so that delta is log-uniform in 3 to 15, or 3 to 10 with like
+/// causes.
+Study make_study(std::uint64_t seed, Trouble trouble = Trouble::none);
 
 struct Outcome {
+  Trouble trouble = Trouble::none;
   Truth truth;
   infer::Diagnosis diagnosis;
   int runs = 0;
   std::string family;  // of the first term of an unknown effect; empty: none found
   double stability = 0;
+  std::string rival;  // strongest simple term outside the library: family and observable
   /// What one more measurement would have settled, where a single effect was left undecided.
   struct Next {
     bool asked = false;
@@ -55,6 +75,6 @@ struct Outcome {
 
 /// scatter: of the simulator's runs by their seed, over the usual.
 Outcome diagnose_study(std::uint64_t seed, const infer::Options& options, Broken broken = Broken::no,
-                       double scatter = 1);
+                       double scatter = 1, Trouble trouble = Trouble::none);
 
 }  // namespace calx::diagnosis

@@ -75,6 +75,7 @@ infer::Observables line_observables() {
                 block("bulk density", "bulk-density", {0}, {0.008 / s5}, 0),
                 block("compressibility", "compressibility", {0.5, 1, 2, 4, 6, 8, 10, 15}, {0.2 / s2}, 0, true),
                 block("wall friction", "wall-friction", {1, 2, 4, 6, 8, 10}, {0.35 / s2}, 0, true)};
+  all.blocks[scale].sums = all.blocks[cycle].name;
   return all;
 }
 

@@ -55,7 +55,7 @@ std::vector<std::string> alien_families(Alien alien) {
     case pulsing:
       return {"periodic", "rough"};
     case apex_shift:
-      return {"drift", "bump", "hinge", "periodic"};
+      return {"shift", "drift", "bump", "hinge", "periodic"};
     default:
       return {"step", "decay"};
   }

@@ -42,6 +42,44 @@ bool wrong(const Outcome& o) {
   return false;
 }
 
+std::string row_of(const char* what, const Rate& r, const char* goal) {
+  char line[300];
+  std::snprintf(line, sizeof line, "%-58s %4d/%-4d %6.2f %% (%5.2f..%6.2f)   goal %s\n", what, r.k, r.n,
+                100 * r.share(), 100 * r.low(), 100 * r.high(), goal);
+  return line;
+}
+
+/// The rule that kept a single effect from being named alone.
+std::string refused_by(const Outcome& o) {
+  const infer::Options options;
+  const infer::Diagnosis& d = o.diagnosis;
+  const std::size_t truth = o.truth.effects[0];
+  if (d.posterior.inclusion[truth] <= options.name_above) {
+    std::size_t other = truth == 0 ? 1 : 0;
+    for (std::size_t e = 0; e < d.posterior.inclusion.size(); ++e)
+      if (e != truth && d.posterior.inclusion[e] > d.posterior.inclusion[other]) other = e;
+    if (d.posterior.unknown >= std::max(d.posterior.none, d.posterior.inclusion[other]))
+      return "not probable enough: " + o.rival;
+    return d.posterior.none > d.posterior.inclusion[other] ? "not probable enough: nothing"
+                                                           : "not probable enough: another effect";
+  }
+  if (d.fitted.inclusion[truth] <= options.fitted_above) return "too improbable by the fitted campaign alone";
+  if (d.after.p < options.fit_above) return "fit test";
+  if (d.gain.log_score < options.gain_above) return "held-out gain";
+  return "a second effect named beside it";
+}
+
+std::string missed(const std::vector<Outcome>& outcomes) {
+  std::map<std::string, int> count;
+  int all = 0;
+  for (const Outcome& o : outcomes)
+    if (o.truth.kind == Kind::single && o.truth.delta >= 5 && o.truth.separability >= 4 && !right(o))
+      ++count[refused_by(o)], ++all;
+  std::string text = "\nclear effects missed, " + std::to_string(all) + ", by the rule that refused them\n";
+  for (const auto& [rule, n] : count) text += std::to_string(n) + "  " + rule + "\n";
+  return text;
+}
+
 }  // namespace
 
 double Rate::low() const { return k == 0 ? 0 : solve(k, n, 0.025); }
@@ -102,11 +140,7 @@ std::string describe(const std::vector<Outcome>& outcomes) {
   const Table t = tabulate(outcomes);
   std::string text;
   char line[300];
-  const auto row = [&](const char* what, const Rate& r, const char* goal) {
-    std::snprintf(line, sizeof line, "%-58s %4d/%-4d %6.2f %% (%5.2f..%6.2f)   goal %s\n", what, r.k, r.n,
-                  100 * r.share(), 100 * r.low(), 100 * r.high(), goal);
-    text += line;
-  };
+  const auto row = [&](const char* what, const Rate& r, const char* goal) { text += row_of(what, r, goal); };
   row("a cause named when nothing is wrong", t.control_named, "<= 0.5");
   row("outside the library said when nothing is wrong", t.control_unknown, "<= 1");
   row("library effect named wrongly", t.single_wrong, "<= 1");
@@ -122,9 +156,6 @@ std::string describe(const std::vector<Outcome>& outcomes) {
   row("stated probability >= 0.97 is true", t.sure_true, ">= 97");
   row("90 % intervals of named amplitudes cover", t.covered, "85..95");
   row("right family for an unknown effect that is flagged", t.family_right, ">= 90");
-  row("undecided: the proposed measurement settles it", t.next_right, ">= 85");
-  row("... and names wrongly", t.next_wrong, "<= 1");
-  row("... a random one settles it", t.random_right, "(contrast)");
   row("common practice: single effect right", t.practice_right, "(contrast)");
   row("common practice: a cause named, all studies", t.practice_named, "(contrast)");
   std::snprintf(line, sizeof line, "%-58s %6d%36s goal <= 44\n", "most runs of a study", t.most_runs, "");
@@ -182,11 +213,52 @@ std::string describe(const std::vector<Outcome>& outcomes) {
                   r.n ? sum / r.n : 0, r.share(), r.n);
     text += line;
   }
+  return text + missed(outcomes);
+}
+
+std::string describe_troubles(const std::vector<Outcome>& outcomes) {
+  const auto part = [&](Trouble trouble) {
+    std::vector<Outcome> out;
+    for (const Outcome& o : outcomes)
+      if (o.trouble == trouble || (trouble == Trouble::count && o.trouble != Trouble::like_causes)) out.push_back(o);
+    return out;
+  };
+  const Table all = tabulate(part(Trouble::count)), like = tabulate(part(Trouble::like_causes));
+  std::string text = "studies made harder\n";
+  text += row_of("a cause named when nothing is wrong", all.control_named, "<= 0.5");
+  text += row_of("outside the library said when nothing is wrong", all.control_unknown, "<= 1");
+  text += row_of("library effect named wrongly", all.single_wrong, "<= 1");
+  text += row_of("outside the library named as something", all.outside_named, "<= 2");
+  text += row_of("library effect named right", all.single_right, "-");
+  text += row_of("truth inside the 95 % set", all.in_set, ">= 95");
+  text += row_of("effect with an imitation closer than 3 named wrongly", like.single_wrong, "<= 1");
+  text += row_of("... named right", like.single_right, "-");
+  text += row_of("... inside the 95 % set", like.in_set, ">= 95");
+  text += "\ntrouble            one effect: right    wrong   | nothing: named  unknown | outside: named\n";
+  for (int k = 1; k < static_cast<int>(Trouble::count); ++k) {
+    const auto trouble = static_cast<Trouble>(k);
+    const Table t = tabulate(part(trouble));
+    char line[300];
+    std::snprintf(line, sizeof line, "%-16s %12d/%-4d %7d  %10d/%-4d %5d %14d/%d\n", trouble_name(trouble),
+                  t.single_right.k, t.single_right.n, t.single_wrong.k, t.control_named.k, t.control_named.n,
+                  t.control_unknown.k, t.outside_named.k, t.outside_named.n);
+    text += line;
+  }
   return text;
 }
 
+std::string describe_next(const std::vector<Outcome>& outcomes) {
+  const Table t = tabulate(outcomes);
+  return "effects left undecided among like causes\n" +
+         row_of("the proposed measurement settles it", t.next_right, ">= 85") +
+         row_of("... and names wrongly", t.next_wrong, "<= 1") +
+         row_of("a random one settles it", t.random_right, "(contrast)");
+}
+
 std::string list_studies(const std::vector<Outcome>& outcomes) {
-  const std::vector<infer::Effect> library = effect_library();
+  std::vector<infer::Effect> library = effect_library();
+  library.emplace_back();  // where there is one more
+  library.back().id = "logged temperature";
   std::string text;
   char line[400];
   for (std::size_t k = 0; k < outcomes.size(); ++k) {
@@ -196,7 +268,7 @@ std::string list_studies(const std::vector<Outcome>& outcomes) {
     for (std::size_t e : o.truth.effects) truth += " [" + library[e].id + "]";
     if (o.truth.alien != alien_count) truth += std::string(" * ") + alien_name(o.truth.alien);
     std::string leading;
-    for (std::size_t e = 0; e < library.size(); ++e) {
+    for (std::size_t e = 0; e < d.posterior.inclusion.size(); ++e) {
       const double p = d.posterior.inclusion[e];
       if (p < 0.05) continue;
       std::snprintf(line, sizeof line, " %s=%.3f(%.3f)", library[e].id.c_str(), p, d.fitted.inclusion[e]);

@@ -26,8 +26,15 @@ struct Table {
 };
 
 Table tabulate(const std::vector<Outcome>& outcomes);
-/// Goals table, confusion table, namings per cause and reliability, as plain text.
+/// Goals table, confusion table, namings per cause, reliability and what refused the clear effects that were missed, as
+/// plain text.
 std::string describe(const std::vector<Outcome>& outcomes);
+
+/// The rows that troubles are judged by, then one line per trouble.
+std::string describe_troubles(const std::vector<Outcome>& outcomes);
+
+/// What the next measurement settles.
+std::string describe_next(const std::vector<Outcome>& outcomes);
 
 /// One line per study: truth, verdict and what led to it.
 std::string list_studies(const std::vector<Outcome>& outcomes);

@@ -10,7 +10,7 @@ sys.path.insert(0, str(pathlib.Path(os.environ["CALX_SOURCE"], "tests", "outside
 from calx import CASE, SOURCE, CalxTest, cup  # noqa: E402
 
 MANIFEST = """{"calx_plugin": 1, "library": "@CALX_PLUGIN_LIBRARY@",
- "abi": {"major": 1, "minor": 0, "draft": 1}, "version": "1.0.0", "vendor": "Example", "license": "MIT",
+ "abi": {"major": 1, "minor": 0}, "version": "1.0.0", "vendor": "Example", "license": "MIT",
  "plugins": [{"id": "org.example.glue", "kind": "calx.contact-law/1", "summary": "A constant pull.",
   "effect": {
    "parameters": [{"name": "pull", "unit": "N", "off": 0, "scale": 1e-4, "sign": "positive", "range": [0, 1], "doc": "pull"}],

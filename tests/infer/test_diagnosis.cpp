@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "infer/self_test.hpp"
 #include "infer/small_problem.hpp"
 #include "infer/unknown_term.hpp"
@@ -49,6 +51,24 @@ TEST_CASE("nothing, one effect, and a step that no effect makes each get their v
   CHECK(terms[0].size == doctest::Approx(-2).epsilon(0.2));
   CHECK(terms[0].stability >= 0.7);
   CHECK(terms[0].words.find("series: a step of -") == 0);
+}
+
+TEST_CASE("a displaced curve is told as such, with its displacement along the index") {
+  LinearModel model = measured(Vector::Zero(31), 8);
+  Block& series = model.observables.blocks[0];
+  for (int k = 0; k < 30; ++k) {
+    model.base[k] = -std::abs(k - 14.5);
+    series.fit[k] -= std::abs(k - 16.5), series.hold[k] -= std::abs(k - 16.5);
+  }
+  const Bank bank = make_bank(model.observables, model.base);
+  const Diagnosis d = diagnose(model, bank, {});
+  CHECK(d.verdict == Verdict::unknown);
+  const std::vector<UnknownTerm> terms = find_terms(model, bank, d, {});
+  REQUIRE(terms.size() >= 1);
+  CHECK(bank.terms[terms[0].term].family == "shift");
+  CHECK(std::abs(terms[0].size - 2) < 3 * terms[0].size_sd);
+  CHECK(terms[0].size_sd < 0.2);
+  CHECK(terms[0].words.find("series: displaced by +") == 0);
 }
 
 TEST_CASE("the same seed gives the same numbers") {

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "infer/diagnosis.hpp"
 #include "infer/small_problem.hpp"
 
@@ -75,4 +77,49 @@ TEST_CASE("a response that is not proportional to the amplitude is corrected at 
   refine(model, bank, simulator, options);
   CHECK(simulator.runs == planned_runs(small_model().effects, 1, options));
   CHECK(model.signatures[2](15, 0) > 3.5);
+}
+
+namespace {
+
+/// Eight effects, each of a number of its own; runs of one seed share 0.8 of their variance.
+class SharedSimulator : public Simulator {
+ public:
+  explicit SharedSimulator(std::uint64_t seed) : seed_(seed) {}
+  int parameters() const override { return 1; }
+  Matrix run(const std::vector<RunPoint>& points) override {
+    Matrix out(31, static_cast<Eigen::Index>(points.size()));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      calx::Random common(seed_ + points[k].seed, 1), own(seed_ + points[k].seed, ++calls_ + 10);
+      Vector y = std::sqrt(0.8) * normal_vector(common, 31) + std::sqrt(0.2) * normal_vector(own, 31);
+      y = 0.5 * y;
+      if (points[k].effect >= 0) y[points[k].effect] += points[k].amplitude[0];
+      out.col(static_cast<Eigen::Index>(k)) = y;
+    }
+    return out;
+  }
+  Vector instrument(const RunPoint&) override { return Vector::Zero(31); }
+
+ private:
+  std::uint64_t seed_, calls_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("what all runs of a seed share is taken out of a response, and its noise is as stated") {
+  Options options;
+  options.common_numbers = 0.8;
+  double square = 0, stated = 0;
+  int count = 0;
+  for (std::uint64_t study = 0; study < 40; ++study) {
+    SharedSimulator simulator(1000000 * study);
+    const LinearModel model = linearise(measured(0), std::vector<Effect>(8), simulator, options);
+    const Matrix runs = simulator.run({{model.u, 0, Vector::Ones(1), options.seed * 1000}});
+    // Rows that no effect touches. One run has a variance of 0.25.
+    square += model.response(runs.col(0)).segment(8, 22).squaredNorm() / 0.25, count += 22;
+    stated += model.response_variance() / 40;
+  }
+  // The run without effects alone would foretell all but 1 - 0.8^2 = 0.36 and a little of the base mean's.
+  CHECK(stated < 0.26);
+  // 880 numbers: a variance known to sqrt(2 / 880); three times that.
+  CHECK(square / count == doctest::Approx(stated).epsilon(3 * std::sqrt(2.0 / count)));
 }

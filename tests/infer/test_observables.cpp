@@ -45,5 +45,8 @@ TEST_CASE("bad observables are refused by name") {
   CHECK(message([](Block& b) { b.autocorrelation = 1; }) ==
         "observable \"series\": the autocorrelation must lie between -1 and 1");
   CHECK(message([](Block& b) { b.fit.resize(0), b.hold.resize(0); }) == "observable \"series\": nothing is measured");
+  CHECK(message([](Block& b) { b.sums = "singel"; }) ==
+        "observable \"series\": sums \"singel\", which is no other observable");
+  CHECK(message([](Block& b) { b.sums = "single"; }) == "accepted");
   CHECK(message([](Block&) {}) == "accepted");
 }

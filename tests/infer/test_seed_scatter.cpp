@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "base/error.hpp"
 #include "infer/seed_scatter.hpp"
 #include "infer/small_problem.hpp"
@@ -20,10 +22,12 @@ TEST_CASE("white and common scatter are told apart, whatever the means of the gr
     groups.push_back(group);
   }
   const SeedScatter scatter = estimate_scatter(all, groups);
-  // 360 degrees of freedom: relative sd of an estimated sd is 1 / sqrt(720) = 3.7 %, tripled.
-  CHECK(scatter.white[0] == doctest::Approx(0.8).epsilon(0.02));
-  CHECK(scatter.common[0] == doctest::Approx(0.6).epsilon(0.12));
-  CHECK(scatter.white[1] == doctest::Approx(1.1).epsilon(0.12));
+  // Three relative sd of an estimated sd, 1 / sqrt(2 n): n = 29 * 360 degrees of freedom for the white part of thirty
+  // numbers, 360 for a single number; the variance of a block's mean is 0.6^2 + 0.8^2 / 30, known to sqrt(2 / 360).
+  const double of_mean = 0.36 + 0.64 / 30;
+  CHECK(scatter.white[0] == doctest::Approx(0.8).epsilon(3 / std::sqrt(2 * 29 * 360.0)));
+  CHECK(scatter.common[0] == doctest::Approx(0.6).epsilon(3 * std::sqrt(2 / 360.0) * of_mean / 0.36 / 2));
+  CHECK(scatter.white[1] == doctest::Approx(1.1).epsilon(3 / std::sqrt(2 * 360.0)));
   CHECK(scatter.common[1] == 0);
   CHECK(scatter.covariance(all)(30, 30) == doctest::Approx(4 * scatter.white[1] * scatter.white[1]));
 }

@@ -17,7 +17,7 @@ mv "$scratch/first" "$scratch/prefix"
 prefix=$scratch/prefix
 unset CALX_PLUGIN_PATH
 
-for file in bin/calx share/calx/template/sensor/CMakeLists.txt include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
+for file in bin/calx share/calx/template/sensor/try.json share/doc/calx/kinds.md share/calx/examples/two_balls.json include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
   [[ -e $prefix/$file ]] || fail "$file is not installed"
 done
 if grep -rIl -e "$build" -e "$root" -e "$scratch/first" "$prefix"; then fail "the files above name the build machine"; fi
@@ -42,6 +42,7 @@ grep -q 'normal stiffness' "$scratch/describe.txt" || fail "calx plugin describe
 
 # A plugin of the templates, begun, built and checked with what is installed alone.
 "$prefix/bin/calx" plugin new my-force --kind particle-force --in "$scratch" >"$scratch/new.log"
+grep -qF -- "-DCMAKE_PREFIX_PATH=$prefix" "$scratch/new.log" || fail "calx plugin new does not say where Calx is installed"
 { cmake -S "$scratch/my-force" -B "$scratch/my-force/build" -DCMAKE_PREFIX_PATH="$prefix" &&
   cmake --build "$scratch/my-force/build" &&
   ctest --test-dir "$scratch/my-force/build" --output-on-failure --no-tests=error; } >>"$scratch/new.log" 2>&1 ||

@@ -7,7 +7,7 @@ import unittest
 
 from calx import EPAM, PLUGIN, PLUGINS, SOURCE, CalxTest, cup, needs
 
-MANIFEST = """{"calx_plugin": 1, "library": "lib.so", "abi": {"major": 1, "minor": 0, "draft": 1}, "version": "1.0.0",
+MANIFEST = """{"calx_plugin": 1, "library": "lib.so", "abi": {"major": 1, "minor": 0}, "version": "1.0.0",
  "vendor": "test", "license": "MIT", "requires": [],
  "plugins": [{"id": "test.force", "kind": "calx.particle-force/1", "summary": "A force for tests."}]}"""
 
@@ -116,6 +116,22 @@ class BadPlugin(CalxTest):
         self.runs(path.name, "--plugin-path", "mine")
         self.assertIn("test.force", [p["id"] for p in self.summary()["provenance"]["plugins"]])
         self.fails(6, 'plugin folder "yours" does not exist', result=self.calx("run", path.name, "--plugin-path", "yours"))
+
+
+    def test_safe_mode(self):
+        """Only what came with Calx: no folder of the user's, no law text beside the case."""
+        path = self.with_force("/* a good one */")
+        mine = {"CALX_PLUGIN_PATH": str(self.dir / "mine")}
+        self.assertEqual(self.calx("check", path.name, env=mine).code, 0)
+        self.fails(PLUGIN, r"no plugin test\.force .* found in ", result=self.calx("check", path.name, "--safe-mode", env=mine))
+        shutil.copytree(self.dir / "mine", self.dir / ".local/share/calx/plugins")
+        self.assertEqual(self.calx("check", path.name).code, 0)
+        self.fails(PLUGIN, r"no plugin test\.force ", result=self.calx("check", path.name, "--safe-mode"))
+        self.assertEqual(self.calx("plugin", "new", "beside", "--kind", "contact-law-text").code, 0)
+        self.assertEqual(self.calx("check", "beside/try.json").code, 0)
+        self.fails(PLUGIN, r"no plugin org\.example\.beside ", result=self.calx("run", "beside/try.json", "--safe-mode"))
+        self.assertEqual(self.calx("check", self.write(cup(), "own.json").name, "--safe-mode").code, 0)
+        self.fails(2, "--plugin-path excludes --safe-mode", result=self.calx("check", path.name, "--safe-mode", "--plugin-path", "mine"))
 
 
 if __name__ == "__main__":

@@ -67,7 +67,7 @@ class CommandLine(CalxTest):
     def test_version(self):
         result = self.calx("--version")
         self.assertEqual(result.code, 0)
-        self.assertRegex(result.out, r"^calx \d+\.\d+\.\d+ \(([0-9a-f]{9}\+?|unknown)\), ABI \d+\.\d+ draft \d+\n$")
+        self.assertRegex(result.out, r"^calx \d+\.\d+\.\d+ \(([0-9a-f]{9}\+?|unknown)\), ABI \d+\.\d+\n$")
 
     def test_usage(self):
         path = self.write(cup())

@@ -41,7 +41,7 @@ class Files(CalxTest):
         proof = summary["provenance"]
         self.assertRegex(proof["calx"], r"^\d+\.\d+\.\d+$")
         self.assertRegex(proof["git"], r"^([0-9a-f]{9}\+?|unknown)$")
-        self.assertRegex(proof["abi"], r"^\d+\.\d+ draft \d+$")
+        self.assertRegex(proof["abi"], r"^\d+\.\d+$")
         self.assertEqual((proof["seed"], proof["precision"], proof["threads"]), (1, "double", 2))
         self.assertRegex(proof["device"], "^cpu")
         self.assertEqual([p["id"] for p in proof["plugins"]], ["calx.box", "calx.hertz-mindlin"])

@@ -41,7 +41,7 @@ inline std::string bad_library(const std::string& name) { return bad_folder(name
 /// A manifest of one particle force; more: further members, each with a leading comma.
 inline std::string manifest(const std::string& id, const std::string& library, const std::string& more = "") {
   return "{\"calx_plugin\": 1, \"library\": \"" + library +
-         "\", \"abi\": {\"major\": 1, \"minor\": 0, \"draft\": 1}, \"version\": \"1.0.0\", \"vendor\": \"Calx\", "
+         "\", \"abi\": {\"major\": 1, \"minor\": 0}, \"version\": \"1.0.0\", \"vendor\": \"Calx\", "
          "\"license\": \"MIT\", \"plugins\": [{\"id\": \"" +
          id + "\", \"kind\": \"calx.particle-force/1\", \"summary\": \"A plugin for tests.\"}]" + more + "}";
 }

@@ -124,8 +124,11 @@ TEST_CASE("a bad manifest is refused with the place and the reason") {
 
 TEST_CASE("what this host cannot run is refused before anything is loaded") {
   CHECK(refusal(changed("\"major\": 1", "\"major\": 2")) == "built for ABI 2.0, this host speaks ABI 1.0: rebuild it");
-  CHECK(refusal(changed("\"draft\": 1", "\"draft\": 2")) ==
-        "built against draft 2, this host speaks draft 1: rebuild it");
+  CHECK(refusal(changed("\"minor\": 0", "\"minor\": 0, \"draft\": 2")) ==
+        "built against draft 2 of the interface, this host speaks the released ABI 1.0: rebuild it, and take \"draft\" "
+        "out of the manifest");
+  CHECK(refusal(changed("\"minor\": 0", "\"minor\": 0, \"draft\": 0")).empty());
+  CHECK(refusal(changed("\"minor\": 0", "\"minor\": 7")).empty());
   CHECK(refusal(changed("calx.particle-force/1", "calx.weather/1")) ==
         "of the kind calx.weather/1, which this host does not know; it knows \"calx.contact-law/1\", "
         "\"calx.geometry/1\", "

@@ -76,8 +76,9 @@ TEST_CASE("the table of the kind is checked") {
   CHECK(reason("null_table") == ": it has no table calx.particle-force/1");
   CHECK(reason("null_eval") == ": its table calx.particle-force/1 lacks eval");
   CHECK(reason("wrong_draft") ==
-        ": its table calx.particle-force/1 was built against draft 7, this host speaks draft 1: rebuild it");
-  CHECK(reason("small_table") == ": its table calx.particle-force/1 has 8 bytes, draft 1 needs 72: rebuild it");
+        ": its table calx.particle-force/1 was built against draft 7, this host speaks the released one of ABI "
+        "1.0: rebuild it");
+  CHECK(reason("small_table") == ": its table calx.particle-force/1 has 8 bytes, ABI 1.0 needs 72: rebuild it");
 }
 
 TEST_CASE("a library that changes the rounding mode is refused and the mode put back") {
@@ -193,7 +194,7 @@ TEST_CASE("a library lying in the working directory is never loaded") {
             " /library: " + plugins.path("bad_trap.so") + " does not exist");
   CHECK(create("test.trap", "").text ==
         "case.json /forces/0: no plugin test.trap of the kind calx.particle-force/1 "
-        "found in no folder");
+        "found in no folder; name its folder with --plugin-path");
   CHECK(create("bad_trap.so", plugins.path()).code == 4);
   CHECK_FALSE(fs::exists(here.path("trap-was-executed")));
 

@@ -82,10 +82,12 @@ TEST_CASE("faults of a contact law's table") {
   CHECK(fault(law()) == "");
   calx_contact_law t = law();
   t.draft = 3;
-  CHECK(fault(t) == "its table calx.contact-law/1 was built against draft 3, this host speaks draft 1: rebuild it");
+  CHECK(fault(t) ==
+        "its table calx.contact-law/1 was built against draft 3, this host speaks the released one of "
+        "ABI 1.0: rebuild it");
   t = law();
   t.struct_size = 96;
-  CHECK(fault(t) == "its table calx.contact-law/1 has 96 bytes, draft 1 needs " +
+  CHECK(fault(t) == "its table calx.contact-law/1 has 96 bytes, ABI 1.0 needs " +
                         std::to_string(sizeof(calx_contact_law)) + ": rebuild it");
   t = law();
   t.eval_f64 = nullptr;
@@ -146,4 +148,25 @@ TEST_CASE("faults of the other kinds") {
   servo.draft = CALX_ABI_DRAFT;
   CHECK(interface_fault(CALX_SERVO, &servo) == "its table calx.servo/1 lacks pose");
   CHECK(interface_fault(CALX_MOTION, nullptr) == "it has no table calx.motion/1");
+}
+
+TEST_CASE("history that survives separation needs a reach") {
+  const calx_field row = {"wet", "1", "1 while wet", 0, 1, 0, CALX_FIELD_KEEP_APART, 0};
+  calx_contact_law t = law();
+  t.state = &row;
+  t.state_count = 1;
+  CHECK(fault(t) == "its history \"wet\" survives separation, but it has no reach, up to which it could");
+  t.reach = [](const double*, double, double) { return 1e-3; };
+  CHECK(fault(t) == "");
+}
+
+TEST_CASE("a descriptor may be larger than that of ABI 1.0, but not smaller") {
+  calx_descriptor d{};
+  d.id = d.kind = d.name = d.version = d.vendor = d.license = d.summary = "x";
+  for (const std::uint32_t size : {96u, 104u, 4096u}) {
+    d.struct_size = size;
+    CHECK(descriptor_fault(d) == "");
+  }
+  d.struct_size = 88;
+  CHECK(descriptor_fault(d) == "a descriptor has 88 bytes, ABI 1.0 needs 96");
 }

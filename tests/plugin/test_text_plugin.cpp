@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string text_manifest(const std::string& id, const std::string& kind, const std::string& more) {
-  return "{\"calx_plugin\": 1, \"abi\": {\"major\": 1, \"minor\": 0, \"draft\": 1}, \"version\": \"1.2.0\", "
+  return "{\"calx_plugin\": 1, \"abi\": {\"major\": 1, \"minor\": 0}, \"version\": \"1.2.0\", "
          "\"vendor\": "
          "\"Me @VERSION@ \\\"x\", \"license\": \"MIT\", \"plugins\": [{\"id\": \"" +
          id + "\", \"kind\": \"" + kind + "\", \"summary\": \"A text.\", " + more + "}]}";
@@ -81,6 +81,23 @@ TEST_CASE("a law that is a text gives the bits of the same text in a library") {
   CHECK(from[0].sha256 == sha256_file(scratch.path("spring.law.h")));
 }
 
+TEST_CASE("a law that is a text may reach beyond touch and keep history so far") {
+  Scratch scratch;
+  scratch.write("golden_law.law.h", read_text(CALX_SOURCE_DIR "/tests/golden/golden_law.law.h"));
+  const std::string text = "\"text\": \"golden_law.law.h\"";
+  scratch.write("string.plugin.json",
+                text_manifest("org.me.string", CALX_CONTACT_LAW, text + ", \"reach\": [\"length\"]"));
+  PluginRegistry registry({scratch.path()});
+  const ContactLaw law(registry.create_with_values("org.me.string", CALX_CONTACT_LAW, "", "", {}));
+  CHECK(law.keeps_apart(0));
+  CHECK(law.acts_apart());
+  CHECK(law.reach({1e3, 1e-4, 7e-5}, 1e-3, 1e-3) == 7e-5);
+  Block block;
+  CHECK(block.evaluate(law, {1e3, 1e-3, 7e-5})[0] == 1);
+  scratch.write("string.plugin.json", text_manifest("org.me.string", CALX_CONTACT_LAW, text));
+  CHECK(refusal(scratch.path(), "org.me.string").find("survives separation, but it has no reach") != std::string::npos);
+}
+
 TEST_CASE("a force that is a text takes its row as parameters") {
   Scratch scratch;
   scratch.write("push.law.h",
@@ -140,6 +157,8 @@ TEST_CASE("manifests of texts are checked before anything is compiled") {
         std::string::npos);
   CHECK(said(CALX_CONTACT_LAW, "\"text\": \"spring.law.h\", \"stiffness\": [\"kn) + system(0\"]")
             .find("is not the name") != std::string::npos);
+  CHECK(said(CALX_CONTACT_LAW, "\"text\": \"spring.law.h\", \"reach\": [\"Kn\"]")
+            .find("/reach: \"Kn\" is not the name of a column") != std::string::npos);
   fs::permissions(scratch.path("spring.law.h"), fs::perms::others_write, fs::perm_options::add);
   CHECK(said(CALX_CONTACT_LAW, "\"text\": \"spring.law.h\"").find("can be changed by every user") != std::string::npos);
 }
@@ -154,8 +173,9 @@ TEST_CASE("beside a case only texts are found, never a library") {
   trust.text_folder = beside.path();
   PluginRegistry registry({}, {}, trust);
   CHECK_NOTHROW(registry.create_with_values("org.me.spring", CALX_CONTACT_LAW, "", "", {}));
-  CHECK_THROWS_WITH(registry.create_with_values("test.trap", CALX_PARTICLE_FORCE, "", "", {}),
-                    "no plugin test.trap of the kind calx.particle-force/1 found in no folder");
+  CHECK_THROWS_WITH(
+      registry.create_with_values("test.trap", CALX_PARTICLE_FORCE, "", "", {}),
+      "no plugin test.trap of the kind calx.particle-force/1 found in no folder; name its folder with --plugin-path");
   CHECK_FALSE(fs::exists("trap-was-executed"));
 }
 

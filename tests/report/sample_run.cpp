@@ -34,7 +34,7 @@ const char* const summary_text = R"({
   {"name": "Hertz contact", "where": "calcine, impact at 3.2 m/s", "seconds": 2.1e-05, "binds": false},
   {"name": "EPAM unloading", "where": "calcine-steel, slope k2", "seconds": 9.4e-06, "binds": false},
   {"name": "motion", "where": "rotor tip 0.39 m/s", "seconds": 3.1e-04, "binds": false}],
- "provenance": {"calx": "0.1.0", "git": "0123abc", "abi": "1.0 draft 1", "case_sha256": "9f2c1b7e4d", "seed": 1, "device": "cpu",
+ "provenance": {"calx": "0.1.0", "git": "0123abc", "abi": "1.0", "case_sha256": "9f2c1b7e4d", "seed": 1, "device": "cpu",
   "precision": "double", "threads": 16,
   "plugins": [{"id": "calx.epam", "version": "1.0.0", "sha256": "5b1f0c2d", "vendor": "Calx"},
               {"id": "calx.rotary-valve", "version": "1.0.0", "sha256": "77aa10ce", "vendor": "Calx"}]},

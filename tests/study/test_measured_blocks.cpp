@@ -84,6 +84,18 @@ TEST_CASE("where nothing is held out, the later half of the repeats is") {
   CHECK(m.observables.blocks[1].hold.size() == 0);
 }
 
+TEST_CASE("the mass in the vessel is the sum of what each cycle delivers") {
+  Study study;
+  study.observables = {curve("per cycle", fit, {1, 2, 3}, 0.4, 4), curve("in all", fit, {1, 3, 6}, 0.4, 4),
+                       curve("elsewhere", fit, {1, 3, 6}, 0.4, 4)};
+  study.observables[0].kind = "mass-per-cycle";
+  study.observables[1].kind = study.observables[2].kind = "mass-after-cycles";
+  study.observables[2].case_name = "slow valve";
+  const MeasuredBlocks m = measured_blocks(study);
+  CHECK(m.observables.blocks[1].sums == "per cycle");
+  CHECK(m.observables.blocks[2].sums.empty());
+}
+
 TEST_CASE("stress is looked at by its logarithm, and another program's numbers are a base with their own sd") {
   Study study;
   StudyObservable o = curve("a", fit, {1, 2, 3}, 0.4, 4);

@@ -27,8 +27,9 @@ extern "C" {
 #define CALX_ABI_MAGIC 0x314C4143u /* 'CAL1' on a little-endian machine, so it also tells byte order */
 #define CALX_ABI_MAJOR 1
 #define CALX_ABI_MINOR 0
-/* Draft number of the tables in this header set; host and plugin must agree on it until release 1.0. */
-#define CALX_ABI_DRAFT 1
+/* The `draft` of every table of this header set: they are released, and do not change before ABI 2 (see POLICY.md). A
+ * table that is still being tried out has a header of its own and a number above 0, on which both sides must agree. */
+#define CALX_ABI_DRAFT 0
 
 typedef int32_t calx_status; /* positive values are reserved */
 #define CALX_OK 0
@@ -66,7 +67,7 @@ typedef struct calx_field {
 } calx_field;
 #define CALX_FIELD_INTEGER (1u << 0)
 #define CALX_FIELD_ODD (1u << 1)        /* changes sign when i and j trade places */
-#define CALX_FIELD_KEEP_APART (1u << 2) /* history survives separation while the pair is listed */
+#define CALX_FIELD_KEEP_APART (1u << 2) /* history survives separation up to the reach of the law; see contact_law.h */
 #define CALX_FIELD_ACCUMULATE (1u << 3) /* particle column a law adds to and never writes */
 #define CALX_FIELD_CHOICE (1u << 4)     /* unit holds names separated by '|'; the value is the index of one, from 0 */
 #define CALX_FIELD_REQUIRED (1u << 5)   /* the user must give it; the preset only keeps tables and tools working */

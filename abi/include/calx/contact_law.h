@@ -4,7 +4,12 @@
  * A law sees one contact at a time, in blocks of rows that share one pair row. Unit normal n points from j to i;
  * velocity and spin are those of i relative to j, velocity at the contact point. It returns the force on i and an
  * extra moment on i; the host gives j the opposite and adds the lever-arm torques, so momentum and angular momentum
- * hold for every law. Against a wall i is the particle, j the wall: r_eff = r_i, m_eff = m_i, r_j = 0. */
+ * hold for every law. Against a wall i is the particle, j the wall: r_eff = r_i, m_eff = m_i, r_j = 0.
+ *
+ * A law with `reach` also gets contacts that do not touch: overlap is then minus the gap, the contact point lies in the
+ * middle of the gap or on the wall. It may get rows beyond its reach, too; there its wrench and energies are 0 and its
+ * history has the presets of a new contact. While the spheres do not touch, only history that is CALX_FIELD_KEEP_APART
+ * lasts: all other columns hold their presets before and after the call. */
 #ifndef CALX_CONTACT_LAW_H
 #define CALX_CONTACT_LAW_H
 #include "abi.h"
@@ -18,7 +23,7 @@ extern "C" {
 #define CALX_LAW_ACTIVE (1u << 1) /* may create energy on purpose */
 
 /* Input columns; bit k of needs asks for in[k]. A column not asked for is null. */
-#define CALX_IN_OVERLAP 0   /* m, positive when touching */
+#define CALX_IN_OVERLAP 0   /* m, positive when touching; minus the gap for a law with reach */
 #define CALX_IN_NX 1        /* 1, from j to i */
 #define CALX_IN_NY 2
 #define CALX_IN_NZ 3
@@ -79,7 +84,8 @@ typedef struct calx_contact_law {
                                  const double* material_j, const double* given, double* pair);
   /* Largest stable step of one contact, s; kg, m; overlap: the largest expected, m. Or null. [main] */
   double(CALX_CALL* stable_dt)(const double* pair, double m_eff, double r_eff, double overlap);
-  /* Largest gap at which the wrench can be non-zero, m; null: acts only while touching. [main] */
+  /* Largest gap at which the wrench can be non-zero, m, finite; null: acts only while touching. r_j is 0 for a wall; of
+   * two spheres it does not fall when a radius grows. [main] */
   double(CALX_CALL* reach)(const double* pair, double r_i, double r_j);
   const char* symbol; /* "spring": prefix of every name in the text */
   const char* source; /* law text, source_size bytes */

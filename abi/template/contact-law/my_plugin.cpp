@@ -35,7 +35,7 @@ class MyPlugin : public calx::Instance {
     CALX_LAW_FILL(table_, my_plugin);
     table_.flags = CALX_LAW_EXACT;  // only + - * /, square root and comparisons: same bits on every device
     // What the user gives for a pair of materials is what the law reads. To compute the pair row from other values and
-    // from properties of the materials, set material, given and derive.
+    // from properties of the materials, set material, given and derive; share/calx/examples/third_party_law shows it.
     table_.given = table_.pair;
     table_.given_count = table_.pair_count;
     table_.stable_dt = &stable_dt;

@@ -136,7 +136,17 @@ CALX_INLINE void nearest(const Wrap& wrap, Four& x, Four& y, Four& z) {
 /// Entries between asking for a partner's data and using it.
 constexpr std::size_t kAhead = 64;
 
-template <bool wraps, bool chooses, class Precision>
+/// Gaps at which the laws of four pairs act, m.
+CALX_INLINE Four gaps_of(const PairScan& scan, const std::uint32_t* i, const std::uint32_t* j) {
+  Four out = all(0);
+  for (int q = 0; q < 4; ++q) {
+    const std::uint32_t a = scan.owner ? scan.owner[i[q]] : i[q], b = scan.owner ? scan.owner[j[q]] : j[q];
+    out[q] = scan.gaps[std::size_t{scan.material[a]} * scan.materials + scan.material[b]];
+  }
+  return out;
+}
+
+template <bool wraps, bool chooses, bool reaches, class Precision>
 CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
   using Sphere = typename Precision::Sphere;
   const Sphere* __restrict s = static_cast<const Sphere*>(scan.spheres);
@@ -188,6 +198,7 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
     d3 -= b3;
     transpose(d0, d1, d2, d3);
     if (wraps) nearest(*scan.wrap, d0, d1, d2);
+    if (reaches) d3 += gaps_of(scan, gi, gj);
     const unsigned hits = bits_of(d0 * d0 + d1 * d1 + d2 * d2 < d3 * d3) & valid;
     // A contact that ends is forgotten; one that begins is named to the caller.
     if (chooses || left < 4 || !same_flags(scan.touching + e, hits))
@@ -221,11 +232,17 @@ CALX_INLINE bool find_in(PairScan& scan, PairBlock& block) {
   return e < last;
 }
 
+template <bool chooses, bool reaches, class Precision>
+CALX_INLINE bool find_with(PairScan& scan, PairBlock& block) {
+  return scan.wrap ? find_in<true, chooses, reaches, Precision>(scan, block)
+                   : find_in<false, chooses, reaches, Precision>(scan, block);
+}
+
 template <class Precision>
 bool find(PairScan& scan, PairBlock& block) {
-  if (scan.chosen)
-    return scan.wrap ? find_in<true, true, Precision>(scan, block) : find_in<false, true, Precision>(scan, block);
-  return scan.wrap ? find_in<true, false, Precision>(scan, block) : find_in<false, false, Precision>(scan, block);
+  if (scan.gaps)
+    return scan.chosen ? find_with<true, true, Precision>(scan, block) : find_with<false, true, Precision>(scan, block);
+  return scan.chosen ? find_with<true, false, Precision>(scan, block) : find_with<false, false, Precision>(scan, block);
 }
 
 /// Geometry of four pairs, in double whatever the precision: unit vectors towards i, overlaps, distances, radii.

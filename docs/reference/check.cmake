@@ -1,0 +1,25 @@
+# Makes the reference without a warning, and holds that what the headers say of a function, a field, a class and a file
+# arrives on a page; a comment that nothing takes is a failure. DOXYGEN: the program; OUT: folder of the Doxyfile.
+if(NOT DOXYGEN)
+  message(STATUS "skipped: doxygen is not there (sudo apt install doxygen)")
+  return()
+endif()
+file(REMOVE_RECURSE ${OUT}/html)
+execute_process(COMMAND ${DOXYGEN} ${OUT}/Doxyfile RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
+if(NOT status EQUAL 0 OR text MATCHES "warning")
+  message(FATAL_ERROR "doxygen: ${text}")
+endif()
+file(GLOB pages ${OUT}/html/*.html)
+set(all "")
+foreach(page ${pages})
+  file(READ ${page} one)
+  string(APPEND all "${one}")
+endforeach()
+foreach(words "Pose at time t, s, since the start event" "positive when touching" "To the step that ends nearest to time"
+        "own memory, row by row; see" "the function table of a contact law" "bits 8..15: vector group"
+        "Base of a motion plugin: implements the C table")
+  string(FIND "${all}" "${words}" at)
+  if(at LESS 0)
+    message(FATAL_ERROR "the reference lacks \"${words}\"")
+  endif()
+endforeach()
