@@ -278,6 +278,7 @@ RunRequest dosed_request(const Study& study, std::size_t case_number, const std:
     if (!c.direction.empty()) parameters[c.direction] = c.info.parameter(c.direction)->off + c.angle(dose.amplitude);
   }
   if (!effects.is_null()) request.overrides.emplace_back("/effects", effects.dump());
+  request.may_be_refused = !effects.is_null();
   return request;
 }
 

@@ -10,9 +10,11 @@
 namespace calx {
 namespace {
 
+/// What can be read from a sensor. curves: names of x and y.
 struct Columns {
   std::string sensor;
   std::vector<std::string> columns;
+  std::vector<std::pair<std::string, std::string>> curves;
 };
 
 [[noreturn]] void fail(const Study& study, const std::string& pointer, const std::string& what) {
@@ -26,7 +28,10 @@ std::vector<Columns> sensors_of(const RunRequest& request, const std::vector<std
   options.plugin_path = plugin_path;
   Simulation sim(resolve(request, plugin_path), options);
   std::vector<Columns> out;
-  for (const auto& s : sim.sensors()) out.push_back({s->name(), s->columns()});
+  for (const auto& s : sim.sensors()) {
+    out.push_back({s->name(), s->columns(), {}});
+    for (const CurveResult& c : s->curves()) out.back().curves.emplace_back(c.x_name, c.y_name);
+  }
   return out;
 }
 
@@ -48,6 +53,7 @@ void check_columns(const Study& study, const StudyObservable& o, const std::stri
   if (at == sensors.end())
     fail(study, pointer + "/sensor",
          "case \"" + o.case_name + "\" has no sensor \"" + o.sensor + "\"; " + did_you_mean(o.sensor, names));
+  if (std::count(at->curves.begin(), at->curves.end(), std::make_pair(o.against, o.column)) > 0) return;
   std::vector<std::string> columns = at->columns;
   const auto check = [&](const std::string& key, const std::string& column) {
     if (std::find(columns.begin(), columns.end(), column) == columns.end())

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/error.hpp"
 #include "io/io.hpp"
@@ -88,6 +89,7 @@ class CachedExecutor : public Executor {
       const CaseFile file = resolve(request, settings_.plugin_path);
       keys.push_back(cache_key(file, settings_.plugin_path));
       const std::string& key = keys.back();
+      if (request.may_be_refused) may_be_refused_.insert(key);
       if (results.count(key) || texts.count(key)) continue;
       if (fs::exists(folder(key))) {
         results[key] = finished(key, true);
@@ -166,7 +168,8 @@ class CachedExecutor : public Executor {
       fs::rename(part(key), folder(key));
       return finished(key, false);
     }
-    end_study(e, said);
+    const bool refused = e.code == static_cast<int>(Fault::settings) && may_be_refused_.count(key) > 0;
+    if (!refused) end_study(e, said);
     RunResult out;
     out.error = e.code < 0 ? e.lost : said;
     // Gone, so that the run is begun anew when it is asked for again.
@@ -203,6 +206,7 @@ class CachedExecutor : public Executor {
 
   ExecutorSettings settings_;
   std::unique_ptr<Launcher> launcher_;
+  std::set<std::string> may_be_refused_;  // keys
   int lock_ = -1;
 };
 

@@ -17,6 +17,7 @@ struct RunRequest {
   std::vector<std::string> patches;                            // JSON merge patches (RFC 7396), applied in order
   std::vector<std::pair<std::string, std::string>> overrides;  // JSON pointer -> JSON value, applied after patches
   std::uint64_t seed = 1;
+  bool may_be_refused = false;  // the case may turn out to be impossible, which says nothing of the other runs
 };
 
 struct RunResult {
@@ -45,8 +46,9 @@ class Executor {
  public:
   virtual ~Executor() = default;
   /// Results in the order of the requests, whatever the order in which runs end; equal requests are computed once. A
-  /// run that fails by itself (blow-up, lost particle) gives a result with an error. Throws Error(Fault::settings) or
-  /// Error(Fault::plugin) for a case that cannot run at all, Error(Fault::files), Error(Fault::interrupted). [main]
+  /// run that fails by itself (blow-up, lost particle) gives a result with an error, and so does one that may be
+  /// refused and is. Throws Error(Fault::settings) or Error(Fault::plugin) for any other case that cannot run at all,
+  /// Error(Fault::files), Error(Fault::interrupted). [main]
   virtual std::vector<RunResult> run(const std::vector<RunRequest>& requests, const ProgressSink& sink) = 0;
 };
 

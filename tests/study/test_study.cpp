@@ -85,4 +85,23 @@ TEST_CASE("files in other units are converted, noise has an absolute and a relat
   CHECK(s.observables[0].tolerance == doctest::Approx(0.05));
 }
 
+TEST_CASE("a curve of a sensor is as good as its columns") {
+  const calx_test::Scratch scratch;
+  const auto study = [&](const std::string& against) {
+    std::ofstream(scratch / "study.json")
+        << R"({"calx_study": 1, "cases": {"hopper": {"case": ")" << CALX_SOURCE_DIR
+        << R"(/examples/calibration/slot_hopper.json", "set": {
+      "/sensors": [{"name": "bed", "kind": "height-map", "region": "hopper", "cell": 0.01, "every": 0.1}]}}},
+      "parameters": [{"name": "f", "range": [0.1, 0.8], "set": ["/contacts/0/parameters/friction"]}],
+      "observables": [{"name": "h", "kind": "pile-profile", "case": "hopper", "sensor": "bed", "column": "height_m",
+        "against": ")"
+        << against << R"(", "unit": "mm", "at": [0.01, 0.02], "measured": {"values": [1, 2], "sd": 1}}]})";
+    return read_study(scratch / "study.json", {CALX_PLUGIN_DIR});
+  };
+  CHECK(study("x_m").observables[0].factor == doctest::Approx(1000));
+  CHECK(study("radius_m").observables[0].measured.x == std::vector<double>{0.01, 0.02});
+  // height_m is a curve over places, no column over time.
+  CHECK_THROWS_WITH_AS(study("time_s"), doctest::Contains("has no column \"height_m\""), Error);
+}
+
 }  // namespace calx
