@@ -1,5 +1,5 @@
-"""The part of the tier that the gate runs: one hidden cause, one control, the same bytes whatever happens on the way, and the
-scorer itself. Budgets are small; the full tier is tier.py."""
+"""The part of the tier that the gate runs: one control, the same bytes whatever happens on the way, and the scorer itself.
+Budgets are small; the full tier is tier.py."""
 import json
 import os
 import pathlib
@@ -18,7 +18,7 @@ from tier import make, solve  # noqa: E402
 
 CALX = os.environ["CALX"]
 SEED = 7  # not that of the table
-EFFECT, CONTROL = "lag", "control_pile"
+CONTROL = "control_pile"
 
 
 class Tier(unittest.TestCase):
@@ -37,10 +37,6 @@ class Tier(unittest.TestCase):
         make(next(s for s in STUDIES if s.name == name), folder, SEED, CALX, budget)
         solve(folder, CALX, 1)
         return folder
-
-    def test_a_hidden_lag_is_found(self):
-        s = score(self.diagnosed(EFFECT, 45))
-        self.assertIn(s["outcome"], ("right", "in group"), s["line"])
 
     def test_nothing_is_named_where_nothing_is_hidden(self):
         s = score(self.diagnosed(CONTROL, 40))
