@@ -76,7 +76,7 @@ void Sections::header() {
   }
   out += "<div class=\"cards\">";
   for (const LabFigure& f : lab_figures(run))
-    out += card(html_text(f.name), html_text(f.value), html_text(f.note), f.value == "none" ? "" : "main");
+    out += html_card(html_text(f.name), html_text(f.value), html_text(f.note), f.value == "none" ? "" : "main");
   if (std::isfinite(figures.filled)) {
     out += html_card("mass filled", format_quantity(figures.filled, "kg", 5),
                      figures.fill ? "sensor " + html_text(figures.fill->name) : "sum over cycles", "main");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/column_name.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "config/document.hpp"
@@ -10,7 +11,6 @@
 #include "infer/denoise.hpp"
 #include "plugin/effects.hpp"
 #include "study/case_check.hpp"
-#include "study/column.hpp"
 #include "study/measured.hpp"
 #include "study/observe.hpp"
 
@@ -64,11 +64,11 @@ void read_reading(Object& o, const Study& study, PossibleMeasurement& m) {
   r.against = o.text("against", "a column of the sensor, \"time_s\" for instance");
   const Node unit = o.need("unit", "of the numbers, \"1\" for none");
   r.unit = unit.text("a unit");
-  const std::string own = column_unit(r.column);
+  const std::string own = split_column(r.column).unit;
   r.factor = unit_factor(unit, own.empty() ? r.unit : own, r.unit, "column \"" + r.column + "\" of the sensor");
   if (r.against.empty()) return;
   const Node at = o.need("at", "the places of the numbers");
-  const std::string x_unit = column_unit(r.against);
+  const std::string x_unit = split_column(r.against).unit;
   r.measured.x = numbers(at, x_unit.empty() ? "1" : x_unit);
   need_rising(at, r.measured.x);
   if (r.measured.x.empty()) at.fail("is empty; at least one place is needed");

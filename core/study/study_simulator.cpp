@@ -9,9 +9,9 @@
 #include "io/io.hpp"
 #include "plugin/effects.hpp"
 #include "study/case_check.hpp"
-#include "study/column.hpp"
 #include "study/measured_blocks.hpp"
 #include "study/observe.hpp"
+#include "study/table.hpp"
 
 namespace calx {
 namespace {
