@@ -57,14 +57,17 @@ struct CaseFlags {
     app.add_option("--arithmetic", arithmetic,
                    "exact, or fast: devices may contract a * b + c, to other last digits than the processor's");
     app.add_option("--seed", seed, "seed of all random choices; overrides the case")->check(calx::whole_number());
-    auto* folders = app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
-    app.add_flag("--safe-mode", safe_mode, "load only plugins that came with Calx: none of yours, none beside the case")
-        ->excludes(folders);
+    app.add_option("--plugin-path", plugin_path, "folder with plugins, searched first; repeatable");
+    app.add_flag("--safe-mode", safe_mode,
+                 "load only plugins that came with Calx: none of yours, none beside the case");
     app.add_flag("--require-pins", require_pins, "load only plugins whose SHA-256 the case gives");
   }
   calx::RunOptions options() {
     if (precision != "double" && precision != "mixed")
       throw calx::Error(calx::Fault::usage, "--precision " + precision + ": expected \"double\" or \"mixed\"");
+    if (safe_mode && !plugin_path.empty())
+      throw calx::Error(calx::Fault::usage,
+                        "--safe-mode excludes --plugin-path: it loads only plugins that came with Calx");
     run.simulation.device = device;
     if (arithmetic != "exact" && arithmetic != "fast")
       throw calx::Error(calx::Fault::usage, "--arithmetic " + arithmetic + ": expected \"exact\" or \"fast\"");

@@ -131,7 +131,7 @@ class BadPlugin(CalxTest):
         self.assertEqual(self.calx("check", "beside/try.json").code, 0)
         self.fails(PLUGIN, r"no plugin org\.example\.beside ", result=self.calx("run", "beside/try.json", "--safe-mode"))
         self.assertEqual(self.calx("check", self.write(cup(), "own.json").name, "--safe-mode").code, 0)
-        self.fails(2, "--plugin-path excludes --safe-mode", result=self.calx("check", path.name, "--safe-mode", "--plugin-path", "mine"))
+        self.fails(2, "--safe-mode excludes --plugin-path", result=self.calx("check", path.name, "--safe-mode", "--plugin-path", "mine"))
 
 
 if __name__ == "__main__":
