@@ -9,9 +9,9 @@
 
 #include "base/error.hpp"
 #include "base/units.hpp"
-#include "config/document.hpp"
-#include "config/node.hpp"
+#include "study/claims.hpp"
 #include "study/confirm.hpp"
+#include "study/diagnosis_plan.hpp"
 #include "study/next_measurements.hpp"
 
 namespace calx {
@@ -20,91 +20,10 @@ namespace {
 using infer::Matrix;
 using infer::Vector;
 
-/// Runs of a plan: seeds of the base in each pass, effects run again at their fitted strength, rounds where base and
-/// leading effects are run again where the leading one puts the parameters, seeds of base and effects in each, rounds
-/// and seeds of the fit by runs of old and extended case, seeds of each side of the confirmation.
-struct Plan {
-  std::vector<int> base;
-  int refined, rounds, rebased, leading, steps, step_seeds;
-  std::size_t confirmed;
-  int trials = 1;  // seeds behind each signature: what the budget leaves
-};
-constexpr int most_trials = 3;
-const std::array<Plan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
-                                    {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
-                                    {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
-                                    {{3, 2, 3}, 2, 2, 3, 2, 2, 2, 3},
-                                    {{2, 2, 2}, 1, 1, 3, 1, 1, 2, 2},
-                                    {{2, 2}, 0, 0, 0, 0, 0, 2, 2}}};
-constexpr int leaders = 2;
-/// Runs of each full case that carry what the reduced ones say.
-constexpr std::size_t full_runs = 4;
-
 /// Data sets of the self-test per cause and strength, and strengths in scales of the cause.
 constexpr int self_test_studies = 24;
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
-
-std::size_t used_cases(const Study& study, const std::vector<StudyObservable>& readings, bool reduced_only) {
-  return static_cast<std::size_t>(std::count_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& c) {
-    return (!reduced_only || !c.reduced.empty()) &&
-           std::any_of(readings.begin(), readings.end(),
-                       [&](const StudyObservable& o) { return o.case_name == c.name; });
-  }));
-}
-
-std::size_t runs_of(const Study& study, const Library& library, const Plan& plan) {
-  const std::size_t cases = used_cases(study, study.observables, false);
-  std::size_t runs = cases;  // the partner of the runs with effects
-  for (const int n : plan.base) runs += static_cast<std::size_t>(n) * cases;
-  bool some_leave_a_case = false;
-  for (const StudyParameter& p : study.parameters) {
-    const std::size_t reached = std::min(p.cases.size(), cases);
-    runs += 2 * reached;
-    some_leave_a_case = some_leave_a_case || reached < cases;
-  }
-  if (some_leave_a_case) runs += cases;
-  std::size_t most = 0;
-  for (const Candidate& c : library.candidates) {
-    if (c.info.is_instrument) continue;
-    const auto reached = static_cast<std::size_t>(std::count(c.cases.begin(), c.cases.end(), true));
-    runs += static_cast<std::size_t>(c.effect.components * plan.trials) * reached;
-    most = std::max(most, reached);
-  }
-  runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
-  if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
-  runs += 2 * (static_cast<std::size_t>((1 + plan.steps) * plan.step_seeds) + plan.confirmed) * cases;
-  return runs + full_runs * used_cases(study, study.observables, true);
-}
-
-/// The richest plan that the budget pays for. Where none does, candidates that the study did not name leave the
-/// library, those that are declared to touch the least of what was measured first.
-Plan plan_of(const Study& study, Library& library, std::size_t* planned) {
-  for (Plan plan : plans) {
-    *planned = runs_of(study, library, plan);
-    if (*planned > study.budget) continue;
-    for (Plan more = plan; ++more.trials <= most_trials && runs_of(study, library, more) <= study.budget;) plan = more;
-    *planned = runs_of(study, library, plan);
-    return plan;
-  }
-  while (*planned > study.budget) {
-    std::size_t least = library.candidates.size();
-    for (std::size_t c = 0; c < library.candidates.size(); ++c) {
-      const Candidate& one = library.candidates[c];
-      if (one.named || one.info.is_instrument) continue;
-      if (least == library.candidates.size() || one.touched < library.candidates[least].touched) least = c;
-    }
-    if (least == library.candidates.size()) break;
-    library.untested.push_back({library.candidates[least].effect.id, "the budget of runs does not pay for it"});
-    library.candidates.erase(library.candidates.begin() + static_cast<std::ptrdiff_t>(least));
-    *planned = runs_of(study, library, plans.back());
-  }
-  if (*planned <= study.budget) return plans.back();
-  throw Error(Fault::settings, study.file + " /budget/runs: " + std::to_string(study.budget) +
-                                   " runs are too few; the cases with " + std::to_string(study.parameters.size()) +
-                                   " parameters need " + std::to_string(*planned) + " at least. Give --budget " +
-                                   std::to_string(*planned) + " or more");
-}
 
 class Diagnoser {
  public:
@@ -122,7 +41,7 @@ class Diagnoser {
     d_.options.base_runs = plan_.base;
     d_.options.refined = plan_.refined;
     d_.options.effect_runs = plan_.trials;
-    read_claims();
+    d_.claims = read_claims(study_);
     say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +
         std::to_string(d_.library.candidates.size()) + " candidate causes, " +
         std::to_string(study_.parameters.size()) + " parameters, " + std::to_string(d_.measured.observables.rows()) +
@@ -136,7 +55,7 @@ class Diagnoser {
     if (d_.diagnosis.verdict == infer::Verdict::unknown)
       d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
     compare();
-    judge_claims();
+    judge_claims(d_);
     if (d_.diagnosis.verdict != infer::Verdict::named && !possible.empty())
       d_.next = weigh_measurements(study_, possible, d_, executor_, sink_);
     return std::move(d_);
@@ -360,73 +279,11 @@ class Diagnoser {
     d_.diagnosis.named.clear();
   }
 
-  void read_claims() {
-    Document document(Parameters{study_.claims, "/claims", study_.folder}, study_.file);
-    std::vector<std::string> observables;
-    for (const StudyObservable& o : study_.observables) observables.push_back(o.name);
-    for (const Node& node : Node(document, document.root(), "/claims").items("claimed causes")) {
-      Object o(node, "a claimed cause");
-      Claim c;
-      c.effect = o.need("effect", "the id of an effect").text("the id of an effect");
-      c.observable = o.need("observable", "what it is said to explain").name_of("observable", observables);
-      c.says = o.text("says", "the claim in words");
-      c.too_much =
-          o.choice("simulation", "what the claim says of the simulation", {"lacks it", "has too much of it"}, 0) == 1;
-      o.done();
-      d_.claims.push_back(c);
-    }
-  }
-
-  void judge_claims() {
-    for (Claim& c : d_.claims) judge_claim(c);
-  }
-
-  void judge_claim(Claim& c) const {
-    const infer::Observables& all = d_.model.observables;
-    std::size_t b = 0;
-    while (all.blocks[b].name != c.observable && b + 1 < all.blocks.size()) ++b;
-    const infer::Block& block = all.blocks[b];
-    const int first = all.first(b), n = all.size(b);
-    const std::vector<double>& simulated = d_.measured.readings[b].simulated;
-    const Vector& y = block.fit.size() != 0 ? block.fit : block.hold;
-    const Vector from = simulated.empty() ? Vector(d_.before.segment(first, n)) : vector_of(simulated);
-    c.departure = (y - from).mean();
-    const infer::Budget& budget = d_.diagnosis.budget;
-    const Matrix& noise = (block.fit.size() != 0 ? budget.fit : budget.hold).noise;
-    c.departure_sd = std::sqrt((budget.systematic + noise).block(first, first, n, n).sum()) / n;
-    c.verdict = "untested";
-    for (std::size_t e = 0; e < d_.kept.size(); ++e) {
-      const Candidate& candidate = d_.library.candidates[d_.kept[e]];
-      if (candidate.info.id != c.effect) continue;
-      c.change = candidate.effect.scale * d_.model.signatures[e].col(0).segment(first, n).mean();
-      // Less of an effect is always possible where there is too much of it, more of a one-sided one where it lacks.
-      const bool one_way = candidate.effect.one_sided || c.too_much;
-      const double would = c.too_much ? -c.change : c.change;
-      c.verdict = c.change == 0 ? "unresolved" : one_way && would * c.departure < 0 ? "contradicted" : "possible";
-    }
-    c.sentence = sentence_of(c, d_.measured.readings[b].unit);
-  }
-
-  static std::string sentence_of(const Claim& c, const std::string& unit) {
-    const std::string error = "the simulation gives " + brief_quantity(std::fabs(c.departure), unit) +
-                              (c.departure > 0 ? " too little" : " too much") + " (" +
-                              format_number(std::round(10 * std::fabs(c.departure) / c.departure_sd) / 10) +
-                              " standard errors)";
-    const std::string of = c.effect + " for " + c.observable + ": " + error;
-    if (c.verdict == "untested") return of + "; the effect could not be tried in this case";
-    if (c.verdict == "unresolved") return of + "; the effect leaves no trace here that these runs resolve";
-    const double would = c.too_much ? -c.change : c.change;
-    const std::string remedy = c.too_much ? "less of the claimed cause would give " : "the claimed cause would give ";
-    const std::string direction = would > 0 ? "more" : "less";
-    if (c.verdict == "contradicted") return of + ", but " + remedy + direction + ": contradicted by its sign";
-    return of + ", and " + remedy + direction + ": its sign fits, which proves nothing yet";
-  }
-
   const Study& study_;
   Executor& executor_;
   const ProgressSink& sink_;
   StudySimulator* simulator_ = nullptr;
-  Plan plan_;
+  DiagnosisPlan plan_;
   StudyDiagnosis d_;
 };
 
