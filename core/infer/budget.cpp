@@ -93,6 +93,17 @@ Budget error_budget(const LinearModel& model, const Options& options) {
   return budget;
 }
 
+Posed pose(const LinearModel& model, const Matrix& systematic, const View& view, const Options& options) {
+  Posed posed;
+  posed.residual = view.y - model.base;
+  posed.covariance = systematic + view.noise;
+  if (options.recalibrate) {
+    posed.residual += model.sensitivities * model.u;
+    posed.covariance += model.sensitivities * model.sensitivities.transpose();
+  }
+  return posed;
+}
+
 NuisanceFit fit_nuisance(const LinearModel& model, const Budget& budget, const Options& options) {
   const auto p = model.u.size();
   if (!options.recalibrate) return {Vector::Zero(p), Matrix::Identity(p, p)};

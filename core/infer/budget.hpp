@@ -31,6 +31,13 @@ Budget error_budget(const LinearModel& model, const Options& options);
 /// The mean of two campaigns of one quantity, each weighed by the inverse of its covariance.
 View combine(const View& a, const View& b, const Observables& observables);
 
+/// Residual of a view, free of nuisance parameters: they are marginalised, unless the options keep them at zero.
+struct Posed {
+  Vector residual;
+  Matrix covariance;
+};
+Posed pose(const LinearModel& model, const Matrix& systematic, const View& view, const Options& options);
+
 struct NuisanceFit {
   Vector u;           // posterior mean given the campaign "fit", standardised
   Matrix covariance;  // posterior

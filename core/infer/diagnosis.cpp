@@ -5,25 +5,6 @@
 
 namespace calx::infer {
 
-namespace {
-
-struct Posed {
-  Vector residual;
-  Matrix covariance;  // with the nuisance parameters marginalised
-};
-
-Posed pose(const LinearModel& model, const Budget& budget, const View& view, const Options& options) {
-  Posed posed;
-  posed.residual = view.y - model.base;
-  posed.covariance = budget.systematic + view.noise;
-  if (options.recalibrate) {
-    posed.residual += model.sensitivities * model.u;
-    posed.covariance += model.sensitivities * model.sensitivities.transpose();
-  }
-  return posed;
-}
-
-/// Effects as fitted together, where two are named, or alone.
 std::vector<Part> parts_of(const Posterior& posterior, const std::vector<std::size_t>& named) {
   std::vector<Part> parts;
   for (std::size_t e : named) parts.push_back({e, posterior.fits[e].amplitude, posterior.fits[e].shape_factor});
@@ -32,8 +13,6 @@ std::vector<Part> parts_of(const Posterior& posterior, const std::vector<std::si
       parts[0].amplitude = pair.fit.first, parts[1].amplitude = pair.fit.second;
   return parts;
 }
-
-}  // namespace
 
 const char* name(Verdict verdict) {
   switch (verdict) {
@@ -56,10 +35,10 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
   screen(model, bank, budget.systematic, budget.hold, options);
   budget.both = combine(budget.fit, budget.hold, model.observables);
 
-  const Posed fit = pose(model, budget, budget.fit, options);
+  const Posed fit = pose(model, budget.systematic, budget.fit, options);
   d.fitted = weigh(model, bank, Metric(fit.covariance, fit.residual), options);
   const View& view = options.stacking ? budget.both : budget.fit;
-  const Posed posed = options.stacking ? pose(model, budget, view, options) : fit;
+  const Posed posed = options.stacking ? pose(model, budget.systematic, view, options) : fit;
   d.posterior = options.stacking ? weigh(model, bank, Metric(posed.covariance, posed.residual), options) : d.fitted;
   d.set = credible_set(d.posterior, 0.95);
   for (double p : d.posterior.inclusion) d.probability.push_back(options.calibration(p));

@@ -29,6 +29,9 @@ struct Diagnosis {
   std::vector<std::size_t> set;  // credible set of 95 %, see credible_set
 };
 
+/// Effects as fitted together, where two are given, or alone.
+std::vector<Part> parts_of(const Posterior& posterior, const std::vector<std::size_t>& effects);
+
 /// Runs the effects that lead under the model so far at the amplitudes fitted, and corrects their signatures where the
 /// response is not proportional to the amplitude: linear model to secant model. Costs options.refined runs at most;
 /// instrument effects cost none.

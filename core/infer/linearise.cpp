@@ -175,13 +175,16 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     const Matrix again = simulator.run(more);
     const auto count = static_cast<Eigen::Index>(changed.size());
     for (Eigen::Index k = 0; k < count; ++k) {
+      // A run that could not be made counts for nothing, unlike one that changed nothing.
+      const int first_made = runs.col(k + 1).allFinite() ? 1 : 0;
+      int made = first_made;
       Vector sum = model.response(changed[static_cast<std::size_t>(k)]);
-      int made = 1;
       for (int s = 1; s < seeds; ++s) {
         const Vector run = again.col((s - 1) * count + k);
         if (run.allFinite()) sum += model.response(run, model.base_columns.col(s - 1)), ++made;
       }
-      if (made > 1) responses[static_cast<std::size_t>(k)] = denoise(sum / made, model.response_variance(made));
+      if (made > first_made)
+        responses[static_cast<std::size_t>(k)] = denoise(sum / made, model.response_variance(made));
     }
   }
   const double variance = seeds > 1 ? model.response_variance(seeds) : model.response_variance();

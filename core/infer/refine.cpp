@@ -17,9 +17,9 @@ void refine(LinearModel& model, const Bank& bank, Simulator& simulator, const Op
   fast.pairs = false, fast.unknown_rival = false;
   const Budget budget = error_budget(model, options);
   const View& view = options.stacking ? budget.both : budget.fit;
-  const Matrix covariance = budget.systematic + view.noise + model.sensitivities * model.sensitivities.transpose();
   const std::uint64_t common_seed = options.seed * 1000;
-  const Metric metric(covariance, view.y - model.base + model.sensitivities * model.u);
+  const Posed posed = pose(model, budget.systematic, view, options);
+  const Metric metric(posed.covariance, posed.residual);
   const Posterior posterior = weigh(model, bank, metric, fast);
   std::vector<std::size_t> order(model.effects.size());
   std::iota(order.begin(), order.end(), 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <thread>
 
@@ -60,15 +61,23 @@ class Draws {
   Matrix systematic_, noise_[2];
 };
 
-/// Runs tasks 0 .. count - 1 on all cores. Each writes its own place, so that their order does not show.
+/// Runs tasks 0 .. count - 1 on all cores. Each writes its own place, so that their order does not show. Throws what
+/// the first of those that throw has thrown.
 void in_parallel(std::size_t count, const std::function<void(std::size_t)>& task) {
   std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> thrown(count);
   std::vector<std::thread> threads;
   for (unsigned k = 0; k < std::max(1u, std::thread::hardware_concurrency()); ++k)
     threads.emplace_back([&] {
-      for (std::size_t i = next++; i < count; i = next++) task(i);
+      for (std::size_t i = next++; i < count; i = next++) try {
+          task(i);
+        } catch (...) {
+          thrown[i] = std::current_exception();
+        }
     });
   for (std::thread& t : threads) t.join();
+  for (const std::exception_ptr& e : thrown)
+    if (e) std::rethrow_exception(e);
 }
 
 }  // namespace

@@ -20,7 +20,8 @@ struct SelfTest {
 
 /// Draws `studies` data sets per effect and amplitude, and as many controls: nuisances from their prior, systematic
 /// errors and shape of the signature from the error budget, noise with tails of t with 5 degrees of freedom, sd of each
-/// block uncertain by 20 %. amplitudes: in scales of the effect. Deterministic from the seed of the options.
+/// block uncertain by 20 %. amplitudes: in scales of the effect. Deterministic from the seed of the options,
+/// on all cores. Throws what diagnose throws.
 SelfTest self_test(const LinearModel& model, const Bank& bank, const std::vector<std::size_t>& effects,
                    const std::vector<double>& amplitudes, int studies, const Options& options);
 

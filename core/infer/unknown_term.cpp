@@ -68,8 +68,7 @@ std::vector<UnknownTerm> find_terms(const LinearModel& model, const Bank& bank, 
     if (bank.terms[t].block == block && bank.terms[t].family != "smooth" && bank.terms[t].family != "rough")
       candidates.push_back(t);
   const View& view = options.stacking ? diagnosis.budget.both : diagnosis.budget.fit;
-  const Matrix plain = diagnosis.budget.systematic + view.noise + model.sensitivities * model.sensitivities.transpose();
-  const Vector residual = view.y - model.base + model.sensitivities * model.u;
+  const auto [residual, plain] = pose(model, diagnosis.budget.systematic, view, options);
   const int first = all.first(block), n = all.size(block);
 
   Matrix covariance = plain;

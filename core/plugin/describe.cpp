@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/nearest.hpp"
+#include "base/text_table.hpp"
 #include "plugin/contact_law.hpp"
 #include "plugin/effects.hpp"
 #include "plugin/plugin.hpp"
@@ -20,26 +21,6 @@ std::string number(double value) {
   char out[40];
   const auto end = std::to_chars(out, out + sizeof out, value);
   return {out, end.ptr};
-}
-
-/// Left-aligned columns; the last one is not padded.
-std::string table(const std::vector<Row>& rows) {
-  std::vector<std::size_t> width;
-  for (const Row& row : rows)
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      width.resize(std::max(width.size(), k + 1));
-      width[k] = std::max(width[k], row[k].size());
-    }
-  std::string out;
-  for (const Row& row : rows) {
-    out += "  ";
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      out += row[k];
-      if (k + 1 < row.size()) out.append(width[k] - row[k].size() + 2, ' ');
-    }
-    out += "\n";
-  }
-  return out;
 }
 
 std::vector<std::string> choices(const calx_field& field) {
@@ -97,7 +78,7 @@ std::string field_section(const std::string& title, const FieldTable& fields) {
   if (fields.count == 0) return "";
   std::vector<Row> rows = {{"name", "unit", "range", "preset", "meaning"}};
   for (std::uint32_t k = 0; k < fields.count; ++k) rows.push_back(field_row(fields.fields[k]));
-  return "\n" + title + "\n" + table(rows);
+  return "\n" + title + "\n" + text_table(rows);
 }
 
 std::string needs_text(const ContactLaw& law) {
@@ -149,7 +130,7 @@ std::string plugin_list_text(const std::vector<std::string>& search) {
       refused += "  " + (m.id.empty() ? m.path : m.id) + ": " + m.refused + "\n";
   }
   std::sort(rows.begin(), rows.end());
-  std::string out = rows.empty() ? "no plugin found\n" : "plugins\n" + table(rows);
+  std::string out = rows.empty() ? "no plugin found\n" : "plugins\n" + text_table(rows);
   if (!refused.empty()) out += "\nrefused\n" + refused;
   out += "\nfolders searched, in this order\n";
   for (const std::string& folder : search) out += "  " + folder + "\n";
@@ -162,17 +143,17 @@ std::string plugin_describe_text(const std::string& id, const std::vector<std::s
   const PluginManifest& manifest = usable(registry, id);
   if (kind == kCaseEffect)
     return id + " " + manifest.version + "\n" + manifest.summary + "\n\n" +
-           table({{"kind", kind}, {"license", manifest.license}, {"manifest", manifest.path}}) +
+           text_table({{"kind", kind}, {"license", manifest.license}, {"manifest", manifest.path}}) +
            effect_text(*manifest.effect);
   const calx_descriptor& d = registry.load(id, kind, "", "");
   const PluginProvenance from = registry.provenance().at(0);
   std::string out = std::string(d.id) + " " + d.version + "\n" + d.summary + "\n\n";
-  out += table({{"name", d.name},
-                {"kind", d.kind},
-                {"vendor", d.vendor},
-                {"license", d.license},
-                {"library", from.path},
-                {"sha256", from.sha256}});
+  out += text_table({{"name", d.name},
+                     {"kind", d.kind},
+                     {"vendor", d.vendor},
+                     {"license", d.license},
+                     {"library", from.path},
+                     {"sha256", from.sha256}});
   out += field_section("parameters", {d.parameter, d.parameter_count});
   out += written_as({d.parameter, d.parameter_count});
   if (kind == CALX_CONTACT_LAW) {

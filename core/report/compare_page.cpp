@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text_table.hpp"
 #include "report/compare.hpp"
 #include "report/page.hpp"
 #include "report/units.hpp"
@@ -14,23 +15,6 @@ constexpr std::size_t kCharts = 60;  // more make a page that nobody scrolls thr
 std::string percent(double share) { return std::isfinite(share) ? format_number(100 * share, 4) + " %" : "-"; }
 
 std::string share_text(const SeriesDifference& s) { return s.range > 0 ? percent(s.largest / s.range) : "-"; }
-
-/// Column widths for a terminal; the first column is the longest name.
-std::string lines(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> width(rows.empty() ? 0 : rows[0].size());
-  for (const auto& row : rows)
-    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], row[k].size());
-  std::string out;
-  for (const auto& row : rows) {
-    out += "  ";
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      out += row[k];
-      if (k + 1 < row.size()) out.append(width[k] - row[k].size() + 2, ' ');
-    }
-    out += "\n";
-  }
-  return out;
-}
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -113,7 +97,7 @@ std::string comparison_text(const RunComparison& c) {
     if (rows.empty()) return;
     Rows all = {head};
     all.insert(all.end(), rows.begin(), rows.end());
-    out += "\n" + title + "\n" + lines(all);
+    out += "\n" + title + "\n" + text_table(all);
   };
   part("provenance", {"what", "A", "B"}, given_rows(c.provenance));
   part("case", {"where", "A", "B"}, given_rows(c.given));

@@ -149,11 +149,7 @@ class Calibrator {
     };
     const std::vector<RunResult> results = executor_.run(requests, inner);
     for (std::size_t k = 0; k < results.size(); ++k) {
-      RunRow& row = out_.runs[first_row + k];
-      row.folder = results[k].folder;
-      row.error = results[k].error;
-      row.cached = results[k].cached;
-      row.wall_seconds = results[k].wall_seconds;
+      out_.runs[first_row + k].take(results[k]);
     }
     take_figures(places, reduced, first_row);
   }

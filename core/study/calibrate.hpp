@@ -6,6 +6,7 @@
 
 #include "study/executor.hpp"
 #include "study/study.hpp"
+#include "study/study_run.hpp"
 
 namespace calx {
 
@@ -47,13 +48,8 @@ struct Wave {
 };
 
 /// Every run of the study, for the table of runs.
-struct RunRow {
+struct RunRow : StudyRun {
   std::size_t wave = 0, place = 0;
-  std::string case_name, folder, error;
-  std::uint64_t seed = 0;
-  bool reduced = false, cached = false;
-  double wall_seconds = 0;
-  std::vector<double> values;  // of the parameters
 };
 
 struct Calibration {

@@ -143,17 +143,9 @@ std::string calibration_json(const Study& study, const Calibration& c) {
 }
 
 std::string cost_json(const Study& study, const Calibration& c) {
-  std::size_t cached = 0;
-  double wall = 0, spent = 0;
-  for (const RunRow& r : c.runs) {
-    cached += r.cached ? 1 : 0;
-    wall += r.wall_seconds;
-    if (!r.cached) spent += r.wall_seconds;
-  }
-  const Json j = {{"runs", c.runs.size()},          {"cached", cached},    {"computed", c.runs.size() - cached},
-                  {"failed", failed_runs(c)},       {"run_seconds", wall}, {"run_seconds_now", spent},
-                  {"executor", study.executor.kind}};
-  return j.dump(2) + "\n";
+  StudyCost cost;
+  for (const RunRow& r : c.runs) cost.add(r);
+  return cost.json(study.executor.kind);
 }
 
 std::string runs_csv(const Study& study, const Calibration& c) {

@@ -214,6 +214,13 @@ bool Candidate::allows(const infer::Vector& amplitude) const {
   return at >= lowest && at <= highest;
 }
 
+std::vector<std::pair<std::string, double>> Candidate::settings(const infer::Vector& amplitude) const {
+  std::vector<std::pair<std::string, double>> out(shape.begin(), shape.end());
+  out.emplace_back(parameter, value(amplitude));
+  if (!direction.empty()) out.emplace_back(direction, info.parameter(direction)->off + angle(amplitude));
+  return out;
+}
+
 double Candidate::angle(const infer::Vector& amplitude) const {
   return amplitude.size() == 1 ? 0 : std::atan2(amplitude[1], amplitude[0]) / degree;
 }
@@ -273,9 +280,7 @@ RunRequest dosed_request(const Study& study, std::size_t case_number, const std:
     Json& parameters = to["parameters"];
     for (const EffectParameter& p : c.info.parameters)
       if (p.is_amplitude && !parameters.contains(p.name)) parameters[p.name] = p.off;
-    for (const auto& shape : c.shape) parameters[shape.first] = shape.second;
-    parameters[c.parameter] = c.value(dose.amplitude);
-    if (!c.direction.empty()) parameters[c.direction] = c.info.parameter(c.direction)->off + c.angle(dose.amplitude);
+    for (const auto& setting : c.settings(dose.amplitude)) parameters[setting.first] = setting.second;
   }
   if (!effects.is_null()) request.overrides.emplace_back("/effects", effects.dump());
   request.may_be_refused = !effects.is_null();

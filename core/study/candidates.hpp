@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/effects.hpp"
@@ -29,6 +30,8 @@ struct Candidate {
   /// Value of the parameter, kept in its range, and of the direction in degrees (0 where there is none).
   double value(const infer::Vector& amplitude) const;
   double angle(const infer::Vector& amplitude) const;
+  /// All parameters that a run with this strength gets, by name.
+  std::vector<std::pair<std::string, double>> settings(const infer::Vector& amplitude) const;
   /// Whether the value lies in its range without being moved there.
   bool allows(const infer::Vector& amplitude) const;
 };

@@ -27,10 +27,11 @@ std::string sentence_of(const Claim& c, const std::string& unit) {
   return of + ", and " + remedy + direction + ": its sign fits, which proves nothing yet";
 }
 
-void judge_claim(const StudyDiagnosis& d, Claim& c) {
+void judge_claim(const Study& study, const StudyDiagnosis& d, Claim& c) {
   const infer::Observables& all = d.model.observables;
-  std::size_t b = 0;
-  while (b + 1 < all.blocks.size() && all.blocks[b].name != c.observable) ++b;
+  std::size_t o = 0;
+  while (study.observables[o].name != c.observable) ++o;
+  const std::size_t b = d.measured.block_of[o];
   const infer::Block& block = all.blocks[b];
   const int first = all.first(b), n = all.size(b);
   const std::vector<double>& simulated = d.measured.readings[b].simulated;
@@ -55,15 +56,18 @@ void judge_claim(const StudyDiagnosis& d, Claim& c) {
 
 }  // namespace
 
-std::vector<Claim> read_claims(const Study& study) {
+std::vector<Claim> read_claims(const Study& study, const Library& library) {
   std::vector<Claim> out;
   Document document(Parameters{study.claims, "/claims", study.folder}, study.file);
   std::vector<std::string> observables;
   for (const StudyObservable& o : study.observables) observables.push_back(o.name);
+  std::vector<std::string> effects;
+  for (const Candidate& c : library.candidates) effects.push_back(c.info.id);
+  for (const Untested& u : library.untested) effects.push_back(u.effect);
   for (const Node& node : Node(document, document.root(), "/claims").items("claimed causes")) {
     Object o(node, "a claimed cause");
     Claim c;
-    c.effect = o.need("effect", "the id of an effect").text("the id of an effect");
+    c.effect = o.need("effect", "the id of an effect").name_of("effect of the library", effects);
     c.observable = o.need("observable", "what it is said to explain").name_of("observable", observables);
     c.says = o.text("says", "the claim in words");
     c.too_much =
@@ -74,8 +78,8 @@ std::vector<Claim> read_claims(const Study& study) {
   return out;
 }
 
-void judge_claims(StudyDiagnosis& d) {
-  for (Claim& c : d.claims) judge_claim(d, c);
+void judge_claims(const Study& study, StudyDiagnosis& d) {
+  for (Claim& c : d.claims) judge_claim(study, d, c);
 }
 
 }  // namespace calx

@@ -7,9 +7,9 @@
 namespace calx {
 
 /// Throws Error(Fault::settings) with the pointer into the study.
-std::vector<Claim> read_claims(const Study& study);
+std::vector<Claim> read_claims(const Study& study, const Library& library);
 
 /// Fills in numbers, verdicts and sentences, once model, budget and recalibrated numbers are there.
-void judge_claims(StudyDiagnosis& d);
+void judge_claims(const Study& study, StudyDiagnosis& d);
 
 }  // namespace calx

@@ -35,13 +35,13 @@ class Diagnoser {
     const std::vector<PossibleMeasurement> possible = read_experiments(study_);
     say("looking for effects that fit the cases of the study");
     d_.library = find_library(study_, d_.options.step_scales);
+    d_.claims = read_claims(study_, d_.library);
     plan_ = plan_of(study_, d_.library, &d_.ledger.planned);
     d_.options.seed = study_.seed;
     d_.options.signature_noise = true;
     d_.options.base_runs = plan_.base;
     d_.options.refined = plan_.refined;
     d_.options.effect_runs = plan_.trials;
-    d_.claims = read_claims(study_);
     say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +
         std::to_string(d_.library.candidates.size()) + " candidate causes, " +
         std::to_string(study_.parameters.size()) + " parameters, " + std::to_string(d_.measured.observables.rows()) +
@@ -55,7 +55,7 @@ class Diagnoser {
     if (d_.diagnosis.verdict == infer::Verdict::unknown)
       d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
     compare();
-    judge_claims(d_);
+    judge_claims(study_, d_);
     if (d_.diagnosis.verdict != infer::Verdict::named && !possible.empty())
       d_.next = weigh_measurements(study_, possible, d_, executor_, sink_);
     return std::move(d_);
@@ -135,11 +135,8 @@ class Diagnoser {
   infer::Posterior single_causes(const infer::Budget& budget) const {
     infer::Options singles = d_.options;
     singles.pairs = singles.unknown_rival = false;
-    const Matrix covariance =
-        budget.systematic + budget.both.noise + d_.model.sensitivities * d_.model.sensitivities.transpose();
-    return infer::weigh(d_.model, d_.bank,
-                        infer::Metric(covariance, budget.both.y - d_.model.base + d_.model.sensitivities * d_.model.u),
-                        singles);
+    const infer::Posed posed = infer::pose(d_.model, budget.systematic, budget.both, d_.options);
+    return infer::weigh(d_.model, d_.bank, infer::Metric(posed.covariance, posed.residual), singles);
   }
 
   /// Nuisance parameters of all data less a change.
@@ -156,13 +153,10 @@ class Diagnoser {
     std::vector<double> variances;
     for (std::size_t e = 0; e < d_.model.effects.size(); ++e) {
       const auto failed = simulator_->failures().find(e);
-      std::string reason;
-      if (failed != simulator_->failures().end())
-        reason = "its run failed: " + failed->second;
-      else if (d_.model.signatures[e].isZero(0))
-        reason = "leaves no trace in what was measured";
-      if (!reason.empty()) {
-        d_.library.untested.push_back({d_.model.effects[e].id, reason});
+      if (d_.model.signatures[e].isZero(0)) {
+        d_.library.untested.push_back({d_.model.effects[e].id, failed == simulator_->failures().end()
+                                                                   ? "leaves no trace in what was measured"
+                                                                   : "its run failed: " + failed->second});
         continue;
       }
       d_.kept.push_back(e);
@@ -193,11 +187,8 @@ class Diagnoser {
 
     std::vector<Vector> amplitudes;
     for (const infer::SingleFit& f : v.posterior.fits) amplitudes.push_back(f.amplitude);
-    const infer::View& view = v.budget.both;
-    const Matrix covariance =
-        v.budget.systematic + view.noise + d_.model.sensitivities * d_.model.sensitivities.transpose();
-    d_.confusion = infer::compare_causes(
-        d_.model, infer::Metric(covariance, view.y - d_.model.base + d_.model.sensitivities * d_.model.u), amplitudes);
+    const infer::Posed posed = infer::pose(d_.model, v.budget.systematic, v.budget.both, d_.options);
+    d_.confusion = infer::compare_causes(d_.model, infer::Metric(posed.covariance, posed.residual), amplitudes);
     find_amplitudes();
   }
 
@@ -208,10 +199,7 @@ class Diagnoser {
     for (std::size_t e = 0; e < v.posterior.inclusion.size() && v.named.empty(); ++e)
       if (v.posterior.inclusion[e] > 0.5 && d_.explained.size() < 2) d_.explained.push_back(e);
     d_.amplitudes.clear();
-    for (const std::size_t e : d_.explained) d_.amplitudes.push_back(v.posterior.fits[e].amplitude);
-    for (const infer::PairModel& pair : v.posterior.pairs)
-      if (d_.explained.size() == 2 && pair.first == d_.explained[0] && pair.second == d_.explained[1])
-        d_.amplitudes = {pair.fit.first, pair.fit.second};
+    for (const infer::Part& part : infer::parts_of(v.posterior, d_.explained)) d_.amplitudes.push_back(part.amplitude);
     infer::Budget all = v.budget;
     all.fit = v.budget.both;
     const infer::NuisanceFit old = infer::fit_nuisance(d_.model, all, d_.options);

@@ -51,29 +51,16 @@ std::string extension_text(const Study& study, const StudyDiagnosis& d, std::siz
 }
 
 std::string cost_json(const Study& study, const StudyDiagnosis& d) {
-  std::size_t cached = 0, failed = 0;
-  double wall = 0, spent = 0;
-  for (const StudyRun& r : d.ledger.runs) {
-    cached += r.cached ? 1 : 0;
-    failed += r.error.empty() ? 0 : 1;
-    wall += r.wall_seconds;
-    if (!r.cached) spent += r.wall_seconds;
-  }
-  const Json j = {{"runs", d.ledger.runs.size()},
-                  {"cached", cached},
-                  {"computed", d.ledger.runs.size() - cached},
-                  {"failed", failed},
-                  {"run_seconds", wall},
-                  {"run_seconds_now", spent},
-                  {"executor", study.executor.kind}};
-  return j.dump(2) + "\n";
+  StudyCost cost;
+  for (const DosedRun& r : d.ledger.runs) cost.add(r);
+  return cost.json(study.executor.kind);
 }
 
 std::string runs_csv(const Study& study, const StudyDiagnosis& d) {
   std::string out = "stage,case,reduced,seed,effects,cached,wall_s,folder,error";
   for (const StudyParameter& p : study.parameters) out += "," + csv_cell(p.name);
   out += "\n";
-  for (const StudyRun& r : d.ledger.runs) {
+  for (const DosedRun& r : d.ledger.runs) {
     out += csv_cell(r.stage) + "," + csv_cell(r.case_name) + (r.reduced ? ",1," : ",0,") + std::to_string(r.seed) +
            "," + csv_cell(r.doses) + (r.cached ? ",1," : ",0,") + format_number(r.wall_seconds) + "," +
            fs::path(r.folder).filename().string() + "," + csv_cell(r.error);

@@ -31,12 +31,6 @@ NoiseModel read_noise(Object& m, const std::string& unit) {
 
 double sd_at(const NoiseModel& noise, double y) { return std::hypot(noise.sd, noise.relative * y); }
 
-std::vector<double> numbers(const Node& node, const std::string& unit) {
-  std::vector<double> out;
-  for (const Node& n : node.items("numbers")) out.push_back(n.number(unit));
-  return out;
-}
-
 void too_few(const Node& node, std::size_t count) {
   node.fail("an sd cannot be estimated from " + std::to_string(count) + (count == 1 ? " repeat" : " repeats") +
             "; at least 2 are needed, or give \"sd\" (of one repeat)");
@@ -184,7 +178,7 @@ void from_values(Object& m, const Node& node, const std::vector<double>& at, Stu
     if (many && at.empty() && repeats != many->items("numbers").size())
       n->fail("\"values\" already tells how many repeats there are; take \"repeats\" away");
   }
-  const std::vector<double> y = many ? numbers(*many, o.unit) : std::vector<double>{one->number(o.unit)};
+  const std::vector<double> y = many ? read_numbers(*many, o.unit) : std::vector<double>{one->number(o.unit)};
   if (y.empty()) many->fail("is empty; at least one measured value is needed");
   if (at.empty()) {
     if (!o.against.empty()) node.fail("a curve needs \"at\", the places of its values, or a \"file\"");
@@ -217,14 +211,37 @@ double unit_factor(const Node& node, const std::string& from, const std::string&
   }
 }
 
+void read_reading(Object& observable, const std::vector<StudyCase>& cases, StudyObservable& o) {
+  std::vector<std::string> names;
+  for (const StudyCase& c : cases) names.push_back(c.name);
+  o.case_name = observable.need("case", "the case of the study that gives it").name_of("case", names);
+  o.sensor = observable.need("sensor", "the sensor of the case").text("the name of a sensor");
+  o.column = observable.need("column", "the column of the sensor").text("a column of the sensor");
+  o.against = observable.text("against", "a column of the sensor, \"time_s\" for instance");
+  const Node unit = observable.need("unit", "of the values, \"1\" for none");
+  o.unit = unit.text("a unit, \"1\" for none");
+  const std::string own = split_column(o.column).unit;
+  o.factor = unit_factor(unit, own.empty() ? o.unit : own, o.unit, "column \"" + o.column + "\" of the sensor");
+}
+
+std::vector<double> read_numbers(const Node& node, const std::string& unit) {
+  std::vector<double> out;
+  for (const Node& n : node.items("numbers")) out.push_back(n.number(unit));
+  return out;
+}
+
+void need_rising(const Node& node, const std::vector<double>& places) {
+  for (std::size_t k = 1; k < places.size(); ++k)
+    if (!(places[k] > places[k - 1])) node.fail("the places must rise; value " + std::to_string(k) + " does not");
+}
+
 void read_measured(Object& observable, StudyObservable& o) {
   const Node node = observable.need("measured", "what was measured: {\"value\": 40.5, \"sd\": 0.5}");
   std::vector<double> at;
   if (const auto n = observable.find("at")) {
     const std::string unit = split_column(o.against).unit;
-    at = numbers(*n, unit.empty() ? "1" : unit);
-    for (std::size_t k = 1; k < at.size(); ++k)
-      if (!(at[k] > at[k - 1])) n->fail("the places must rise; value " + std::to_string(k) + " does not");
+    at = read_numbers(*n, unit.empty() ? "1" : unit);
+    need_rising(*n, at);
   }
   Object m(node, "measured data");
   if (const auto file = m.find("file")) {

@@ -85,9 +85,14 @@ MeasuredBlocks measured_blocks(const Study& study) {
     const auto partner = std::find_if(out.readings.begin(), out.readings.end(),
                                       [&](const StudyObservable& r) { return same_reading(r, o); });
     if (partner != out.readings.end()) {
-      Block& to = blocks[static_cast<std::size_t>(partner - out.readings.begin())];
-      if ((to.fit.size() == 0 || to.hold.size() == 0) && join(to, block)) continue;
+      const auto number = static_cast<std::size_t>(partner - out.readings.begin());
+      Block& to = blocks[number];
+      if ((to.fit.size() == 0 || to.hold.size() == 0) && join(to, block)) {
+        out.block_of.push_back(number);
+        continue;
+      }
     }
+    out.block_of.push_back(blocks.size());
     out.readings.push_back(o);
     blocks.push_back(block);
   }

@@ -9,6 +9,7 @@ namespace calx {
 struct MeasuredBlocks {
   infer::Observables observables;
   std::vector<StudyObservable> readings;  // one per block: how a run gives its numbers
+  std::vector<std::size_t> block_of;      // of each observable of the study
   bool split_repeats = false;             // the study holds nothing out: the later half of the repeats was taken for it
   bool has_hold_out = false;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/column_name.hpp"
 #include "base/error.hpp"
@@ -23,53 +24,35 @@ using infer::Vector;
 /// Effects below this probability are not run for a measurement that was not made.
 constexpr double least_probability = 0.01;
 
-std::vector<double> numbers(const Node& node, const std::string& unit) {
-  std::vector<double> out;
-  for (const Node& n : node.items("numbers")) out.push_back(n.number(unit));
-  return out;
-}
-
-void need_rising(const Node& node, const std::vector<double>& values) {
-  for (std::size_t k = 1; k < values.size(); ++k)
-    if (!(values[k] > values[k - 1])) node.fail("must rise; value " + std::to_string(k) + " does not");
-}
-
-void read_known_load(Object& o, const Node& node, PossibleMeasurement& m) {
+void read_known_load(Object& o, const Node& node, const Study& study, PossibleMeasurement& m) {
   m.is_known_load = true;
   Object load(node, "a known load");
-  m.sensor = load.need("sensor", "the sensor that shows it").text("the name of a sensor");
+  std::vector<std::string> sensors;
+  for (const StudyObservable& b : study.observables) sensors.push_back(b.sensor);
+  m.sensor = load.need("sensor", "the sensor that shows it").name_of("sensor of an observable", sensors);
   const Node time = load.need("time_s", "times of the load"),
              value = load.need("value", "the load, SI, at these times");
-  m.time = numbers(time, "s"), m.load = numbers(value, "1");
+  m.time = read_numbers(time, "s"), m.load = read_numbers(value, "1");
   need_rising(time, m.time);
   if (m.time.size() < 2) time.fail("must hold two times at least");
   if (m.load.size() != m.time.size()) value.fail("must hold one value per time");
   load.done();
   const Node at = o.need("at", "times at which the sensor is read, s");
-  m.at = numbers(at, "s");
+  m.at = read_numbers(at, "s");
   need_rising(at, m.at);
   for (const double t : m.at)
     if (t < m.time.front() || t > m.time.back()) at.fail(format_number(t) + " s is outside of the load's times");
   m.reading.unit = "1";
 }
 
-void read_reading(Object& o, const Study& study, PossibleMeasurement& m) {
-  std::vector<std::string> cases;
-  for (const StudyCase& c : study.cases) cases.push_back(c.name);
+void read_case_reading(Object& o, const Study& study, PossibleMeasurement& m) {
   StudyObservable& r = m.reading;
   r.name = m.name, r.kind = "other";
-  r.case_name = o.need("case", "the case of the study that gives it").name_of("case", cases);
-  r.sensor = o.need("sensor", "the sensor of the case").text("the name of a sensor");
-  r.column = o.need("column", "the column of the sensor").text("a column of the sensor");
-  r.against = o.text("against", "a column of the sensor, \"time_s\" for instance");
-  const Node unit = o.need("unit", "of the numbers, \"1\" for none");
-  r.unit = unit.text("a unit");
-  const std::string own = split_column(r.column).unit;
-  r.factor = unit_factor(unit, own.empty() ? r.unit : own, r.unit, "column \"" + r.column + "\" of the sensor");
+  read_reading(o, study.cases, r);
   if (r.against.empty()) return;
   const Node at = o.need("at", "the places of the numbers");
   const std::string x_unit = split_column(r.against).unit;
-  r.measured.x = numbers(at, x_unit.empty() ? "1" : x_unit);
+  r.measured.x = read_numbers(at, x_unit.empty() ? "1" : x_unit);
   need_rising(at, r.measured.x);
   if (r.measured.x.empty()) at.fail("is empty; at least one place is needed");
 }
@@ -91,11 +74,8 @@ class Foretelling {
       const double step = d_.options.step_scales * c.effect.scale;
       for (int i = 0; i < c.effect.components; ++i) {
         const Vector amplitude = step * Vector::Unit(c.effect.components, i);
-        std::vector<std::pair<std::string, double>> values(c.shape.begin(), c.shape.end());
-        values.emplace_back(c.parameter, c.value(amplitude));
-        if (!c.direction.empty())
-          values.emplace_back(c.direction, c.info.parameter(c.direction)->off + c.angle(amplitude));
-        const std::vector<double> shown = apply_instruments(registry, instruments_of(c.info, values), m.time, m.load);
+        const std::vector<double> shown =
+            apply_instruments(registry, instruments_of(c.info, c.settings(amplitude)), m.time, m.load);
         for (std::size_t p = 0; p < m.at.size(); ++p)
           e.signatures[k](static_cast<Eigen::Index>(p), i) =
               (passing(m.time, shown, m.at[p]) - e.base[static_cast<Eigen::Index>(p)]) / step;
@@ -104,18 +84,19 @@ class Foretelling {
     return e;
   }
 
-  infer::Experiment of_case(const PossibleMeasurement& m) {
+  /// left_for_effects: runs with effects that the budget still pays for; the likelier causes come first. Throws
+  /// Error(Fault::numerics) where the case does not give the numbers.
+  infer::Experiment of_case(const PossibleMeasurement& m, std::size_t left_for_effects) {
     const std::size_t n = std::max<std::size_t>(1, m.reading.measured.x.size());
     infer::Experiment e = blank(m, n);
     StudySimulator simulator(study_, {m.reading}, d_.library, executor_, sink_, d_.ledger);
     simulator.effects = d_.kept;
     const infer::Options& options = d_.options;
-    std::uint64_t seed = options.seed * 1000 + 1;
-    for (std::size_t k = 0; k + 1 < options.base_runs.size(); ++k)
-      seed += static_cast<std::uint64_t>(options.base_runs[k]);
     // The points of the model's own runs, so that what the case recorded already is read again, not run.
+    const auto seeds = d_.model.base_columns.cols();
     std::vector<infer::RunPoint> base;
-    for (int k = 0; k < options.base_runs.back(); ++k) base.push_back({d_.model.u, -1, {}, seed++});
+    for (Eigen::Index k = 0; k < seeds; ++k)
+      base.push_back({d_.model.u, -1, {}, d_.model.base_seed + static_cast<std::uint64_t>(k)});
     const Matrix runs = simulator.run(base);
     infer::Observables one;
     infer::Block block;
@@ -125,7 +106,7 @@ class Foretelling {
     infer::LinearModel local;
     local.observables = one;
     local.base = block.fit;
-    local.base_weight = 1.0 / options.base_runs.back();
+    local.base_weight = 1.0 / static_cast<double>(seeds);
     local.scatter = infer::estimate_scatter(one, {runs});
     local.common_numbers = d_.model.common_numbers;
     const infer::Denoiser denoise(one, local.scatter);
@@ -144,7 +125,12 @@ class Foretelling {
     }
     points = {{d_.model.u, -1, {}, common}};
     std::vector<std::pair<std::size_t, int>> owner;
-    for (std::size_t k = 0; k < d_.kept.size(); ++k) {
+    std::vector<std::size_t> order(d_.kept.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const std::vector<double>& probable = d_.diagnosis.posterior.inclusion;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t x, std::size_t y) { return probable[x] > probable[y]; });
+    for (const std::size_t k : order) {
       const Candidate& c = d_.library.candidates[d_.kept[k]];
       const double step = options.step_scales * c.effect.scale;
       for (int i = 0; i < c.effect.components; ++i) {
@@ -152,7 +138,7 @@ class Foretelling {
                                     common};
         if (c.info.is_instrument)
           e.signatures[k].col(i) = simulator.instrument(point) / step;
-        else if (d_.diagnosis.posterior.inclusion[k] >= least_probability)
+        else if (probable[k] >= least_probability && points.size() <= left_for_effects)
           points.push_back(point), owner.emplace_back(k, i);
       }
     }
@@ -160,6 +146,7 @@ class Foretelling {
     local.partner = local.common_run = changed.col(0);
     for (std::size_t k = 0; k < owner.size(); ++k) {
       const double step = options.step_scales * d_.model.effects[owner[k].first].scale;
+      if (!changed.col(static_cast<Eigen::Index>(k) + 1).allFinite()) continue;
       e.signatures[owner[k].first].col(owner[k].second) =
           denoise(local.response(changed.col(static_cast<Eigen::Index>(k) + 1)), local.response_variance()) / step;
     }
@@ -208,11 +195,11 @@ std::vector<PossibleMeasurement> read_experiments(const Study& study) {
     m.cost = o.number("cost", "1", 1, Allow::above_zero);
     const auto load = o.find("known_load");
     if (load)
-      read_known_load(o, *load, m);
+      read_known_load(o, *load, study, m);
     else
-      read_reading(o, study, m);
+      read_case_reading(o, study, m);
     const Node sd = o.need("sd", "of one number of the measurement");
-    m.sd = sd.json().is_array() ? numbers(sd, m.reading.unit)
+    m.sd = sd.json().is_array() ? read_numbers(sd, m.reading.unit)
                                 : std::vector<double>{sd.number(m.reading.unit, Allow::above_zero)};
     const std::size_t n = load ? m.at.size() : std::max<std::size_t>(1, m.reading.measured.x.size());
     if (m.sd.size() != 1 && m.sd.size() != n) sd.fail("must be one number or one per place");
@@ -231,11 +218,28 @@ std::vector<NextMeasurement> weigh_measurements(const Study& study, const std::v
   if (sink.message) sink.message("weighing " + std::to_string(possible.size()) + " measurements that could be made");
   Foretelling foretelling(study, d, executor, sink);
   std::vector<infer::Experiment> experiments;
-  for (const PossibleMeasurement& m : possible)
-    experiments.push_back(m.is_known_load ? foretelling.known_load(m) : foretelling.of_case(m));
+  for (const PossibleMeasurement& m : possible) try {
+      if (m.is_known_load) {
+        experiments.push_back(foretelling.known_load(m));
+        continue;
+      }
+      const bool is_read = std::any_of(d.measured.readings.begin(), d.measured.readings.end(),
+                                       [&](const StudyObservable& o) { return o.case_name == m.reading.case_name; });
+      // A case that gave data has its runs without effects already.
+      const std::size_t own =
+          is_read ? 0 : 1 + static_cast<std::size_t>(d.model.base_columns.cols()) + 2 * study.parameters.size();
+      if (d.ledger.runs.size() + own > study.budget)
+        d.notes.push_back("measurement \"" + m.name + "\" was not weighed: the budget leaves no runs for its case");
+      else
+        experiments.push_back(foretelling.of_case(m, study.budget - d.ledger.runs.size() - own));
+    } catch (const Error& e) {
+      // What was found so far is worth more than one measurement that cannot be foretold.
+      if (e.fault() != Fault::numerics) throw;
+      d.notes.push_back("measurement \"" + m.name + "\" was not weighed: " + e.what());
+    }
   std::vector<NextMeasurement> out;
   for (const infer::Proposal& p : infer::propose(d.model, d.diagnosis, experiments, d.options))
-    out.push_back({possible[p.experiment].name, possible[p.experiment].cost, p.information, p.clear_verdict});
+    out.push_back({experiments[p.experiment].name, experiments[p.experiment].cost, p.information, p.clear_verdict});
   // What is told per unit of cost decides which comes first.
   std::stable_sort(out.begin(), out.end(), [](const NextMeasurement& a, const NextMeasurement& b) {
     return a.information / a.cost > b.information / b.cost;

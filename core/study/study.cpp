@@ -163,14 +163,7 @@ class StudyReader {
       check_new_name(name, b.name, study_.observables);
       const Node kind = o.need("kind", "what was measured: " + quoted_list(kinds));
       b.kind = kind.name_of("kind of observable", kinds);
-      b.case_name = o.need("case", "the case of the study that gives it").name_of("case", names_of(study_.cases));
-      b.sensor = o.need("sensor", "the sensor of the case").text("the name of a sensor");
-      b.column = o.need("column", "the column of the sensor").text("a column of the sensor");
-      b.against = o.text("against", "a column of the sensor, \"time_s\" for instance");
-      const Node unit = o.need("unit", "of the measured values, \"1\" for none");
-      b.unit = unit.text("a unit, \"1\" for none");
-      const std::string own = split_column(b.column).unit;
-      b.factor = unit_factor(unit, own.empty() ? b.unit : own, b.unit, "column \"" + b.column + "\" of the sensor");
+      read_reading(o, study_.cases, b);
       b.use = o.choice("use", "a use", {"fit", "hold-out"}, 0) == 0 ? StudyObservable::Use::fit
                                                                     : StudyObservable::Use::hold_out;
       read_measured(o, b);
@@ -188,7 +181,7 @@ class StudyReader {
   static void read_simulated(const Node& node, StudyObservable& b) {
     Object o(node, "what another program gave: {\"value\": 40.5, \"sd\": 0.5}");
     if (const auto values = o.find("values"))
-      for (const Node& n : values->items("numbers")) b.simulated.push_back(n.number(b.unit));
+      b.simulated = read_numbers(*values, b.unit);
     else
       b.simulated = {o.need("value", "a number, or \"values\"").number(b.unit)};
     if (const auto sd = o.find("sd")) b.simulated_sd = sd->number(b.unit, Allow::not_negative);

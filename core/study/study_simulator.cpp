@@ -71,7 +71,7 @@ bool StudySimulator::uses(std::size_t case_number) const {
 
 std::vector<std::vector<RunResult>> StudySimulator::execute(const std::vector<Setting>& settings, bool full) {
   std::vector<RunRequest> requests;
-  std::vector<StudyRun> rows;
+  std::vector<DosedRun> rows;
   for (const Setting& s : settings) {
     std::vector<Dose> doses;
     std::string words;
@@ -85,7 +85,7 @@ std::vector<std::vector<RunResult>> StudySimulator::execute(const std::vector<Se
       if (!uses(k)) continue;
       const bool reduced = !full && !study_.cases[k].reduced.empty();
       requests.push_back(dosed_request(study_, k, at, s.seed, doses, reduced));
-      StudyRun row;
+      DosedRun row;
       row.stage = ledger_.stage, row.case_name = study_.cases[k].name, row.seed = s.seed, row.reduced = reduced;
       row.values = at, row.doses = words;
       rows.push_back(row);
@@ -107,8 +107,7 @@ std::vector<std::vector<RunResult>> StudySimulator::execute(const std::vector<Se
   for (std::size_t k = 0; k < results.size(); ++k) {
     out[k / per_setting].push_back(results[k]);
     if (!ledger_.known.insert(text_of(requests[k])).second) continue;
-    rows[k].folder = results[k].folder, rows[k].error = results[k].error;
-    rows[k].cached = results[k].cached, rows[k].wall_seconds = results[k].wall_seconds;
+    rows[k].take(results[k]);
     ledger_.runs.push_back(rows[k]);
   }
   return out;
@@ -215,11 +214,7 @@ std::string StudySimulator::refusal(const Setting& setting) const {
 Vector StudySimulator::instrument(const infer::RunPoint& point) {
   const Candidate& c = library_.candidates[effects[static_cast<std::size_t>(point.effect)]];
   const std::vector<RunResult> runs = execute({{point.u, {}, point.seed}}, false)[0];
-  std::vector<std::pair<std::string, double>> parameters(c.shape.begin(), c.shape.end());
-  parameters.emplace_back(c.parameter, c.value(point.amplitude));
-  if (!c.direction.empty())
-    parameters.emplace_back(c.direction, c.info.parameter(c.direction)->off + c.angle(point.amplitude));
-  const std::vector<InstrumentUse> uses_of = instruments_of(c.info, parameters);
+  const std::vector<InstrumentUse> uses_of = instruments_of(c.info, c.settings(point.amplitude));
   PluginRegistry registry(plugin_search_path(study_.executor.plugin_path));
   Vector change = Vector::Zero(rows_);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -279,7 +274,6 @@ Vector StudySimulator::anchor(const std::vector<std::uint64_t>& seeds, const Vec
     else
       shift_[k] = to[k] - from[k];
   }
-  anchored_ = true;
   // Both means scatter, and what the reduced case is carried by with them.
   Vector error = Vector::Zero(rows_);
   const double count = static_cast<double>(seeds.size());

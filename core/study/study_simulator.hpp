@@ -9,22 +9,18 @@
 #include "infer/simulator.hpp"
 #include "study/candidates.hpp"
 #include "study/executor.hpp"
+#include "study/study_run.hpp"
 
 namespace calx {
 
-/// A run as the table of runs shows it.
-struct StudyRun {
-  std::string stage, case_name, folder, error;
-  std::uint64_t seed = 0;
-  bool reduced = false, cached = false;
-  double wall_seconds = 0;
-  std::vector<double> values;  // of the parameters, in their units
-  std::string doses;           // in words
+/// A run of the diagnosis.
+struct DosedRun : StudyRun {
+  std::string stage, doses;  // what it is for; in words
 };
 
 /// Every distinct run that was asked for, in the order of asking.
 struct RunLedger {
-  std::vector<StudyRun> runs;
+  std::vector<DosedRun> runs;
   std::set<std::string> known;  // requests, as text
   std::size_t planned = 0;      // runs of the whole diagnosis at most
   std::string stage;            // what the next runs are for
@@ -58,7 +54,6 @@ class StudySimulator : public infer::Simulator {
   /// the reduced cases are carried: by a factor where both are well away from zero, else by a shift. seeds: of the
   /// runs at the prior, two or more. Returns the standard error of what is carried, per number; zero where nothing is.
   infer::Vector anchor(const std::vector<std::uint64_t>& seeds, const infer::Vector& sd);
-  bool has_anchor() const { return anchored_; }
 
   /// Values of the parameters in their units; standardised ones beyond their range end at its border.
   std::vector<double> values(const infer::Vector& u) const;
@@ -89,7 +84,6 @@ class StudySimulator : public infer::Simulator {
   std::vector<Block> blocks_;
   int rows_ = 0;
   infer::Vector factor_, shift_;
-  bool anchored_ = false;
   std::map<std::size_t, std::string> failures_;
 };
 

@@ -115,6 +115,25 @@ TEST_CASE("numbers that an effect cannot reach have no signature there, and an e
   CHECK(model.signatures[2].isZero(0));
 }
 
+TEST_CASE("one seed that cannot be run leaves the others to speak") {
+  /// Fails for effect 0 at the seed that effects share.
+  class Brittle : public Curved {
+   public:
+    using Curved::Curved;
+    Matrix run(const std::vector<RunPoint>& points) override {
+      Matrix out = Curved::run(points);
+      for (std::size_t k = 0; k < points.size(); ++k)
+        if (points[k].effect == 0 && points[k].seed == 1000)
+          out.col(static_cast<Eigen::Index>(k)).setConstant(std::nan(""));
+      return out;
+    }
+  } simulator(0.05);
+  Options options;
+  options.effect_runs = 4;
+  const LinearModel model = linearise(measured_at(10), small_model().effects, simulator, options);
+  CHECK((model.signatures[0] - small_signatures()[0]).topRows(30).norm() < 0.1 * small_signatures()[0].norm());
+}
+
 TEST_CASE("what scatter leaves in a signature widens the tolerance of its effect, and is none for an instrument") {
   Curved simulator(0.5);
   Options options;

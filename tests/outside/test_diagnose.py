@@ -167,8 +167,19 @@ class Diagnose(CalxTest):
 
     def test_nothing_is_wrong(self):
         self.measure(0)
-        found, result = self.diagnose()
+        study = copy.deepcopy(STUDY)
+        reading = {"case": "drain", "sensor": "in hopper", "column": "mass_kg", "unit": "g", "sd": 0.05}
+        study["experiments"] = [{"name": "mass left", **reading}, {"name": "after hours", **reading, "against": "time_s", "at": [7200]},
+                                {"name": "weight", "known_load": {"sensor": "in hopper", "time_s": [0, 1], "value": [0.01, 0.01]},
+                                 "at": [0.5], "sd": 1e-5}]
+        study["claims"] = [{"effect": "acme.wide-slot", "observable": "draining again", "says": "it drains too slowly"}]
+        found, result = self.diagnose(study=study)
         self.assertEqual(found["verdict"], "none", found["sentence"])
+        # What cannot be foretold costs a note, not the diagnosis; the budget holds.
+        self.assertEqual({n["name"] for n in found["next"]}, {"mass left", "weight"})
+        self.assertTrue(any('"after hours" was not weighed' in n and "does the run reach that far" in n for n in found["notes"]))
+        self.assertLessEqual(found["runs"]["used"], 60)
+        self.assertNotEqual(found["claims"][0]["verdict"], "untested")
         self.assertIn("Nothing is shown to be wrong", result.out)
         self.assertIsNone(found["extension"])
         self.assertFalse((self.dir / "study.out" / "extension").exists())
@@ -210,6 +221,9 @@ class Diagnose(CalxTest):
                 ("roles", [], "/roles: a list of 0 values; must hold names"),
                 ("claims", [{"effect": "acme.wide-slot"}], "/claims/0/observable: is missing"),
                 ("claims", [{"effect": "acme.wide-slot", "observable": "drain"}], 'no observable is called "drain"; did you mean "draining"'),
+                ("claims", [{"effect": "acme.wide-slit", "observable": "draining"}], 'acme.wide-slit"; did you mean "acme.wide-slot"'),
+                ("experiments", [{"name": "a", "known_load": {"sensor": "in hoper", "time_s": [0, 1], "value": [1, 1]}, "at": [0.5], "sd": 1}],
+                 r'no sensor of an observable is called "in hoper"; did you mean "in hopper"\?'),
                 ("experiments", [{"name": "a"}], "/experiments/0/case: is missing"),
                 ("experiments", [{"name": "a", "case": "drain", "sensor": "in hoper", "column": "mass_kg", "unit": "g", "sd": 1}],
                  r'/experiments/0/sensor: case "drain" has no sensor "in hoper"; did you mean "in hopper"\?'),

@@ -37,6 +37,7 @@ TEST_CASE("two campaigns of one reading are one block, with one sd of the mean")
   CHECK(block.sd[0] == doctest::Approx(std::sqrt((0.04 + 0.0225) / 2)));
   CHECK(block.ordered);
   CHECK(m.has_hold_out);
+  CHECK(m.block_of == std::vector<std::size_t>{0, 0});
   CHECK_FALSE(m.split_repeats);
   // The tolerance stays what it is in the unit of the observable.
   CHECK(block.tolerance * block.sd[0] == doctest::Approx(0.14));
