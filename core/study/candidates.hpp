@@ -44,6 +44,7 @@ struct Untested {
 struct Library {
   std::vector<Candidate> candidates;  // by id and parameter, whatever the order in the study
   std::vector<Untested> untested;
+  std::size_t runs_for_all = 0;  // budget that would try every candidate; 0: this one does
 };
 
 /// Every effect that comes with Calx and those the study names ("library": "named": only those), where it can be put

@@ -50,7 +50,10 @@ class Diagnoser {
     simulator_ = &simulator;
     learn();
     judge();
-    if (d_.diagnosis.verdict == infer::Verdict::named) check_ranges();
+    if (d_.library.runs_for_all > 0)
+      d_.notes.push_back("the budget leaves causes out; " + std::to_string(d_.library.runs_for_all) +
+                         " runs would try all of them");
+    if (d_.diagnosis.verdict == infer::Verdict::named) check_name();
     if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
     if (d_.diagnosis.verdict == infer::Verdict::unknown)
       d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
@@ -229,7 +232,10 @@ class Diagnoser {
     }
   }
 
-  void check_ranges() {
+  /// A strength out of range, or a cause that nobody tried and that may do the same, takes a name away.
+  void check_name() {
+    if (d_.library.runs_for_all > 0)
+      return withdraw("the budget leaves other causes out, and one of them may do the same");
     for (std::size_t k = 0; k < d_.explained.size(); ++k) {
       const Candidate& c = d_.library.candidates[d_.kept[d_.explained[k]]];
       if (!c.allows(d_.amplitudes[k]))
@@ -241,11 +247,14 @@ class Diagnoser {
   /// The old and the extended case, fitted by runs and then run with new seeds against the held-out data.
   void confirm() {
     const RealModel old{d_.u_before, {}, {}}, named{d_.u_after, d_.explained, d_.amplitudes};
+    const auto fitted = [&](const char* stage, const RealModel& start) {
+      d_.ledger.stage = stage;
+      // A poor plan takes what the linear model says.
+      return plan_.steps > 0 ? fit_by_runs(d_, *simulator_, start, plan_.steps, plan_.step_seeds) : RealFit{start, {}};
+    };
     try {
-      d_.ledger.stage = "old case fitted by runs";
-      const RealModel old_fit = fit_by_runs(d_, *simulator_, old, plan_.steps, plan_.step_seeds).model;
-      d_.ledger.stage = "extended case fitted by runs";
-      const RealFit fit = fit_by_runs(d_, *simulator_, named, plan_.steps, plan_.step_seeds);
+      const RealModel old_fit = fitted("old case fitted by runs", old).model;
+      const RealFit fit = fitted("extended case fitted by runs", named);
       d_.ledger.stage = "confirmation with new seeds";
       d_.confirmation = confirm_by_runs(d_, *simulator_, old_fit, fit.model, plan_.confirmed);
       d_.u_before = old_fit.u, d_.u_after = fit.model.u;
@@ -258,7 +267,7 @@ class Diagnoser {
     if (!d_.confirmation.passed)
       withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
     else
-      check_ranges();
+      check_name();
   }
 
   void withdraw(const std::string& why) {

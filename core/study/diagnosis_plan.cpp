@@ -44,7 +44,8 @@ std::size_t runs_of(const Study& study, const Library& library, const DiagnosisP
   }
   runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
   if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
-  runs += 2 * (static_cast<std::size_t>((1 + plan.steps) * plan.step_seeds) + plan.confirmed) * cases;
+  const int fitted = plan.steps > 0 ? (1 + plan.steps) * plan.step_seeds : 0;
+  runs += 2 * (static_cast<std::size_t>(fitted) + plan.confirmed) * cases;
   return runs + full_runs * used_cases(study, study.observables, true);
 }
 
@@ -59,6 +60,7 @@ DiagnosisPlan plan_of(const Study& study, Library& library, std::size_t* planned
     *planned = runs_of(study, library, plan);
     return plan;
   }
+  library.runs_for_all = *planned;
   while (*planned > study.budget) {
     std::size_t least = library.candidates.size();
     for (std::size_t c = 0; c < library.candidates.size(); ++c) {

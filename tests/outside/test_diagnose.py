@@ -184,6 +184,20 @@ class Diagnose(CalxTest):
         self.assertIsNone(found["extension"])
         self.assertFalse((self.dir / "study.out" / "extension").exists())
 
+    def test_a_small_budget_names_nothing_that_an_untried_cause_may_do(self):
+        self.measure(0.004)
+        study = copy.deepcopy(STUDY)
+        study["library"] = "calx"
+        found, _ = self.diagnose("--budget", 22, "--no-report", study=study)
+        self.assertIn(found["verdict"], ("ambiguous", "unknown"), found["sentence"])
+        self.assertIsNone(found["extension"])
+        self.assertTrue(any("would try all of them" in n for n in found["notes"]), found["notes"])
+        self.assertTrue(any("does not pay" in u["reason"] for u in found["untested"]))
+        self.assertLessEqual(found["runs"]["used"], 22)
+        # Causes that the study names stay.
+        self.assertIn("acme.wide-slot", [c["id"] for c in found["causes"]] + [u["effect"] for u in found["untested"]])
+        self.assertFalse(any(u["effect"] == "acme.wide-slot" for u in found["untested"]))
+
     def test_order_jobs_and_kill_leave_no_trace(self):
         self.measure(0.004)
         self.diagnose("--no-report")
