@@ -79,7 +79,7 @@ class Runner {
         if (check.kind && (!*check.kind || entry.kind == check.kind)) add(check, entry, entry.id, out);
         if (stops("creates")) break;
       }
-      if (entry.kind == CALX_CONTACT_LAW && options_.only.empty() && !stops("creates")) add_curves(entry, out);
+      if (options_.only.empty() && !stops("creates")) add_drawings(entry, out);
     }
     if (wanted(kSilent)) {
       const std::string start = printed_.substr(0, 200);
@@ -138,25 +138,35 @@ class Runner {
     return outcome_of(CheckOutcome::failed, "the plugin " + child.text());
   }
 
-  void add_curves(const PluginManifest& manifest, CheckedManifest& out) {
+  void add_drawings(const PluginManifest& manifest, CheckedManifest& out) {
+    const bool law = manifest.kind == CALX_CONTACT_LAW, motion = manifest.kind == CALX_MOTION;
+    if (!law && !motion && manifest.kind != CALX_GEOMETRY) return;
     const json answer = in_child([&]() -> json {
-      json list = json::array();
+      json curves = json::array(), drawn = json::array();
       try {
         Subject subject(manifest, options_.seed);
-        for (const CheckCurve& curve : law_curves(subject))
-          list.push_back({{"chart", curve.chart}, {"name", curve.name}, {"x", curve.x}, {"y", curve.y}});
+        if (law || motion)
+          for (const CheckCurve& curve : law ? law_curves(subject) : motion_curves(subject))
+            curves.push_back({{"chart", curve.chart}, {"name", curve.name}, {"x", curve.x}, {"y", curve.y}});
+        else
+          for (const CheckShape& shape : shapes(subject))
+            drawn.push_back({{"name", manifest.id + ", " + shape.name},
+                             {"vertices", shape.vertices},
+                             {"triangles", shape.triangles}});
       } catch (...) {  // the checks tell what is wrong
       }
-      return list;
+      return {{"curves", curves}, {"shapes", drawn}};
     });
-    if (!answer.is_array()) return;
+    if (!answer.contains("curves")) return;
     const auto numbers = [](const json& list) {
       std::vector<double> values;
       for (const json& x : list) values.push_back(x.is_number() ? x.get<double>() : 0.0);
       return values;
     };
-    for (const json& curve : answer)
+    for (const json& curve : answer["curves"])
       out.curves.push_back({curve["chart"], curve["name"], numbers(curve["x"]), numbers(curve["y"])});
+    for (const json& shape : answer["shapes"])
+      out.shapes.push_back({shape["name"], numbers(shape["vertices"]), shape["triangles"]});
   }
 
   const CheckOptions& options_;

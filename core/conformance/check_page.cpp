@@ -1,4 +1,5 @@
-// check_page.cpp: the result of the checks as text, as JSON and as a page with the curves of a law.
+// check_page.cpp: the result of the checks as text, as JSON and as a page with the curves of a law or a motion and the
+// shape of a geometry.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include "base/version.hpp"
 #include "conformance/conformance.hpp"
 #include "report/page.hpp"
+#include "report/shape_picture.hpp"
 
 namespace calx {
 namespace {
@@ -34,18 +36,27 @@ Chart chart_of(const std::string& which) {
     chart.caption = "Head-on impacts of two such spheres; 0: they stay together.";
     chart.x = {"speed before", "m/s", true, {}};
     chart.y = {"speed after over before", "1", true, {}};
-  } else {
+  } else if (which == "tangential") {
     chart.title = "Tangential loop";
     chart.caption = "Pressed to half of the overlap of an impact at 0.1 m/s, then sheared to and fro.";
     chart.x = {"tangential displacement", "m", false, {}};
     chart.y = {"tangential force", "N", false, {}};
+  } else if (which == "shift") {
+    chart.title = "Displacement over time";
+    chart.caption = "Length of the displacement, with the sign of its largest component.";
+    chart.x = {"time", "s", true, {}};
+    chart.y = {"displacement", "m", false, {}};
+  } else {
+    chart.title = "Angle over time";
+    chart.x = {"time", "s", true, {}};
+    chart.y = {"angle", "deg", false, {}};
   }
   return chart;
 }
 
 std::string charts(Page& page, const std::vector<CheckCurve>& curves) {
   std::string out;
-  for (const char* which : {"normal", "restitution", "tangential"}) {
+  for (const char* which : {"normal", "restitution", "tangential", "shift", "turn"}) {
     Chart chart = chart_of(which);
     for (const CheckCurve& curve : curves) {
       if (curve.chart != which) continue;
@@ -56,6 +67,18 @@ std::string charts(Page& page, const std::vector<CheckCurve>& curves) {
       chart.series.push_back(series);
     }
     if (!chart.series.empty()) out += page.chart(chart);
+  }
+  return out.empty() ? "" : "<div class=\"charts\">" + out + "</div>";
+}
+
+std::string pictures(const std::vector<CheckShape>& shapes) {
+  std::string out;
+  for (const CheckShape& shape : shapes) {
+    std::vector<Vec3> vertices;
+    for (std::size_t k = 0; k + 2 < shape.vertices.size(); k += 3)
+      vertices.push_back({shape.vertices[k], shape.vertices[k + 1], shape.vertices[k + 2]});
+    out += "<figure>" + draw_shape(vertices, shape.triangles) + "<figcaption>" + html_text(shape.name) +
+           ": blue seen from outside, orange from inside.</figcaption></figure>";
   }
   return out.empty() ? "" : "<div class=\"charts\">" + out + "</div>";
 }
@@ -120,9 +143,9 @@ void write_check_page(const CheckReport& report, const std::string& file) {
                       html_text(result.meaning), html_text(result.detail)});
     const std::string name = std::filesystem::path(manifest.path).filename().string();
     const std::string head = name.substr(0, name.find(".plugin.json"));
-    page.section(
-        "manifest" + std::to_string(number++), html_text(head), head,
-        charts(page, manifest.curves) + html_table(rows, rows[0].size()) + "<p>" + html_text(manifest.path) + "</p>");
+    page.section("manifest" + std::to_string(number++), html_text(head), head,
+                 pictures(manifest.shapes) + charts(page, manifest.curves) + html_table(rows, rows[0].size()) + "<p>" +
+                     html_text(manifest.path) + "</p>");
   }
   std::ofstream out(file, std::ios::binary);
   out << page.html();

@@ -30,6 +30,10 @@ std::vector<Check> sensor_checks();
 
 /// Force over overlap, restitution over speed, tangential loop.
 std::vector<CheckCurve> law_curves(Subject& subject);
+/// Displacement and angle over time.
+std::vector<CheckCurve> motion_curves(Subject& subject);
+/// At most six configurations that look different.
+std::vector<CheckShape> shapes(Subject& subject);
 
 /// Uses the plugin once, whatever its kind: its main function is called.
 void exercise(Subject& subject);

@@ -17,16 +17,24 @@ struct CheckResult {
   std::string detail;  // what was found, or why it was skipped
 };
 
-/// A curve of a contact law, for the page.
+/// A curve of a contact law or a motion, for the page.
 struct CheckCurve {
-  std::string chart, name;  // chart: "normal", "restitution" or "tangential"
+  std::string chart, name;  // chart: "normal", "restitution", "tangential"; "shift", "turn"
   std::vector<double> x, y;
+};
+
+/// The shape of a geometry, for the page; part frame, m.
+struct CheckShape {
+  std::string name;
+  std::vector<double> vertices;          // x, y, z of each
+  std::vector<std::uint32_t> triangles;  // three vertex numbers each
 };
 
 struct CheckedManifest {
   std::string path;  // of the manifest
   std::vector<CheckResult> results;
   std::vector<CheckCurve> curves;
+  std::vector<CheckShape> shapes;
 };
 
 struct CheckOptions {

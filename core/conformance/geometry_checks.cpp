@@ -1,4 +1,5 @@
 // geometry_checks.cpp: the shape of a part.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -127,6 +128,22 @@ std::string mesh(Subject& s) {
 }
 
 }  // namespace
+
+std::vector<CheckShape> shapes(Subject& s) {
+  std::vector<CheckShape> out;
+  for (const Built& one : every_shape(s)) {
+    const Box box = one.surface.bounds();
+    const Tessellation mesh = one.surface.tessellate(5e-3 * norm(box.hi - box.lo));
+    CheckShape shape{one.name, {}, mesh.triangles};
+    for (const Vec3& v : mesh.vertices) shape.vertices.insert(shape.vertices.end(), {v.x, v.y, v.z});
+    const bool seen = std::any_of(out.begin(), out.end(), [&](const CheckShape& other) {
+      return other.vertices == shape.vertices && other.triangles == shape.triangles;
+    });
+    if (!seen) out.push_back(std::move(shape));
+    if (out.size() == 6) break;
+  }
+  return out;
+}
 
 std::vector<Check> geometry_checks() {
   constexpr const char* kind = CALX_GEOMETRY;

@@ -26,6 +26,13 @@ struct Moved {
   }
 };
 
+/// Of the first cycle, by bisection of the cycle count.
+double cycle_time(const Moved& m) {
+  double low = 0, high = m.span;
+  for (int k = 0; k < 200; ++k) (m.at(0.5 * (low + high)).cycle < 1 ? low : high) = 0.5 * (low + high);
+  return high;
+}
+
 std::vector<Moved> motions(Subject& s) {
   std::vector<Moved> out;
   for (const Variant& variant : s.variants()) {
@@ -215,10 +222,8 @@ std::string top_speed(Subject& s) {
 std::string period(Subject& s) {
   bool any = false;
   for (const Moved& m : motions(s)) {
-    // The time of one cycle, by bisection of the cycle count.
     if (m.at(m.span).cycle < 2) continue;
-    double low = 0, high = m.span;
-    for (int k = 0; k < 200; ++k) (m.at(0.5 * (low + high)).cycle < 1 ? low : high) = 0.5 * (low + high);
+    const double high = cycle_time(m);
     any = true;
     for (int k = 0; k < 200; ++k) {
       const double t = s.uniform(0.01, 0.99) * high;
@@ -238,6 +243,34 @@ std::string period(Subject& s) {
 }
 
 }  // namespace
+
+std::vector<CheckCurve> motion_curves(Subject& s) {
+  std::vector<CheckCurve> out;
+  for (const Moved& m : motions(s)) {
+    CheckCurve shift{"shift", m.name, {}, {}}, turn{"turn", m.name, {}, {}};
+    const int looks = 1000;
+    const double span = m.at(m.span).cycle > 3 ? 2.5 * cycle_time(m) : m.span;
+    for (int k = 0; k <= looks; ++k) {
+      const double t = span * k / looks;
+      const calx_pose p = m.at(t);
+      // Along one signed line where the motion has one, so that to and fro do not look alike.
+      const Vec3 d = vec(p.displacement);
+      double along = d.x;
+      if (std::fabs(d.y) > std::fabs(along)) along = d.y;
+      if (std::fabs(d.z) > std::fabs(along)) along = d.z;
+      shift.x.push_back(t), shift.y.push_back(std::copysign(norm(d), along));
+      turn.x.push_back(t), turn.y.push_back(p.angle * 180 / M_PI);
+    }
+    for (CheckCurve* curve : {&shift, &turn}) {
+      const auto [low, high] = std::minmax_element(curve->y.begin(), curve->y.end());
+      const bool seen = std::any_of(out.begin(), out.end(), [&](const CheckCurve& other) {
+        return other.chart == curve->chart && other.y == curve->y && other.x == curve->x;
+      });
+      if (*low < *high && !seen && out.size() < 12) out.push_back(std::move(*curve));
+    }
+  }
+  return out;
+}
 
 std::vector<Check> motion_checks() {
   constexpr const char* kind = CALX_MOTION;

@@ -17,6 +17,18 @@ std::vector<std::string> sentences(Object& object, const std::string& key) {
   return out;
 }
 
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+Changes read_changes(Object& object) {
+  Changes out;
+  for (const auto& [pointer, value] : object.section("set", "JSON pointers and values").entries()) {
+    if (pointer.empty() || pointer[0] != '/')
+      value.fail("\"" + pointer + "\" is no JSON pointer; must start with /, such as \"/time/end\"");
+    out.emplace_back(pointer, value.json().dump());
+  }
+  return out;
+}
+
 PaperForm read_form(const Node& node, bool is_reduced) {
   PaperForm form;
   form.pointer = node.pointer();
@@ -26,11 +38,7 @@ PaperForm read_form(const Node& node, bool is_reduced) {
   if (!std::filesystem::exists(form.case_path))
     file.fail("\"" + file.json().get<std::string>() + "\" does not exist; must be the path of a case, relative to " +
               node.document().folder());
-  for (const auto& [pointer, value] : object.section("set", "JSON pointers and values").entries()) {
-    if (pointer.empty() || pointer[0] != '/')
-      value.fail("\"" + pointer + "\" is no JSON pointer; must start with /, such as \"/time/end\"");
-    form.set.emplace_back(pointer, value.json().dump());
-  }
+  form.set = read_changes(object);
   form.reduced = sentences(object, "reduced");
   if (is_reduced && form.reduced.empty())
     object.need("reduced", "a reduced form must say what it leaves out, in a list of sentences");
@@ -217,9 +225,11 @@ PaperRows read_paper_rows(const std::string& path) {
   out.title = root.need("title", "a title").text("a title");
   out.source = root.need("source", "the publication").text("the publication");
   out.intro = root.text("intro", "a sentence");
+  const Changes common = read_changes(root);
   std::vector<std::string> runs, names;
   for (const auto& [name, node] : root.section("runs", "runs by name").entries()) {
     out.runs.push_back(read_run(name, node));
+    for (PaperForm& form : out.runs.back().forms) form.set.insert(form.set.begin(), common.begin(), common.end());
     runs.push_back(name);
   }
   const Node rows = root.need("rows", "a list of rows");

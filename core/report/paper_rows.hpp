@@ -11,9 +11,10 @@ namespace calx {
 
 /// One form of a run: a case and what is changed in it.
 struct PaperForm {
-  std::string case_path;                                 // absolute; empty: the run has no such form
-  std::vector<std::pair<std::string, std::string>> set;  // JSON pointer -> JSON value
-  std::vector<std::string> reduced;                      // sentences: what this form leaves out; none for a full one
+  std::string case_path;  // absolute; empty: the run has no such form
+  // JSON pointer -> JSON value; what the file sets in every run comes first, so that a form's own changes win.
+  std::vector<std::pair<std::string, std::string>> set;
+  std::vector<std::string> reduced;  // sentences: what this form leaves out; none for a full one
   std::string pointer;
 };
 

@@ -66,7 +66,8 @@ void add_plugin_command(CLI::App& app) {
   check_command->add_option("--only", flags.options.only, "one check");
   check_command->add_flag("--names", flags.names, "list the checks");
   check_command->add_flag("--json", flags.json, "the result as JSON on stdout");
-  check_command->add_option("--page", flags.page, "write the result and the curves of a law to this HTML file");
+  check_command->add_option("--page", flags.page,
+                            "write the result to this HTML file, with curves of a law or motion, pictures of a shape");
   check_command->add_option("--seed", flags.options.seed, "seed of random inputs (default 1)")->check(whole_number());
   check_command->add_option("--time-limit", flags.options.limit, "for each check, s (default 60)")
       ->check(zero_or_more());

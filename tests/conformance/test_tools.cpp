@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "conformance/conformance.hpp"
 #include "plugin/scratch.hpp"
+#include "report/shape_picture.hpp"
 
 using namespace calx;
 namespace fs = std::filesystem;
@@ -113,6 +114,7 @@ TEST_CASE("the page holds every check, and the curves of a law") {
       CHECK(std::abs(curve.y[k] - 1e4 * curve.x[k]) <= 1e-9 * curve.y[k]);
   }
   CHECK(seen);
+  CHECK(report.manifests[0].shapes.empty());
   CHECK(holds(fault_of([&] { write_check_page(report, "/nowhere/check.html"); }), "6 /nowhere/check.html"));
 }
 
@@ -165,4 +167,48 @@ TEST_CASE("a new plugin is refused for a name or kind that cannot be, and where 
   scratch.write("wet/keep.txt", "mine");
   CHECK(holds(fault_of([&] { new_plugin("wet", "motion", scratch.path()); }), "is there already and is left as it is"));
   CHECK(read_text(scratch.path("wet/keep.txt")) == "mine");
+}
+
+TEST_CASE("the page holds the shapes of a geometry, each once, and the curves of a motion") {
+  Scratch scratch;
+  const CheckReport mesh = check_plugins(bad_folder("open_mesh"));
+  const std::vector<CheckShape>& shapes = mesh.manifests.at(0).shapes;
+  REQUIRE(shapes.size() == 2);
+  CHECK(shapes[0].name == "test.open-mesh, presets");
+  CHECK(shapes[0].triangles.size() == 3 * 10);  // a box without its lid
+  CHECK(shapes[1].triangles.size() == 3 * 12);
+  for (const double x : shapes[0].vertices) CHECK((x == 0 || x == doctest::Approx(0.1)));
+  write_check_page(mesh, scratch.path("mesh.html"));
+  const std::string page = read_text(scratch.path("mesh.html"));
+  CHECK(holds(page, "<figcaption>test.open-mesh, presets: blue seen from outside"));
+  CHECK(holds(page, "x, y, z: 100"));
+
+  const CheckReport motion = check_plugins(bad_folder("wrong_velocity"));
+  REQUIRE(motion.manifests.at(0).curves.size() == 1);  // it does not turn
+  const CheckCurve& shift = motion.manifests[0].curves[0];
+  CHECK(shift.chart == "shift");
+  REQUIRE(shift.x.size() == shift.y.size());
+  for (std::size_t k = 0; k < shift.x.size(); ++k) CHECK(std::abs(shift.y[k] - std::min(shift.x[k], 1.0)) < 1e-12);
+  CHECK(shift.x.back() == doctest::Approx(1.2));
+  write_check_page(motion, scratch.path("motion.html"));
+  CHECK(holds(read_text(scratch.path("motion.html")), "Displacement over time"));
+}
+
+TEST_CASE("a shape is drawn with nearer faces over farther ones, inside and outside apart") {
+  // A square seen from outside, above, in front of one seen from inside, below.
+  const std::vector<Vec3> vertices = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1},
+                                      {0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::vector<std::uint32_t> up = {0, 1, 2, 0, 2, 3}, down = {4, 6, 5, 4, 7, 6};
+  const auto fill = [](const std::string& svg, std::size_t from) {
+    const std::size_t at = svg.find("fill=\"#", from);
+    return at == std::string::npos ? std::string() : svg.substr(at + 7, 6);
+  };
+  const std::string above = fill(draw_shape(vertices, up), 0), below = fill(draw_shape(vertices, down), 0);
+  CHECK(above != below);
+  std::vector<std::uint32_t> both = up;
+  both.insert(both.end(), down.begin(), down.end());
+  const std::string svg = draw_shape(vertices, both);
+  CHECK(fill(svg, 0) == below);
+  CHECK(fill(svg, svg.rfind("<path")) == above);
+  CHECK(draw_shape({}, {}).empty());
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -281,4 +282,20 @@ TEST_CASE("bad rows files are refused with place and remedy") {
   CHECK(message_of(replaced(good, "\"assumed\"", "\"against_scatter\": true, \"assumed\"")) ==
         "rows.json /rows/0: is judged against the scatter of seeds; /calx/minus must name the run it is the difference "
         "to");
+}
+
+TEST_CASE("what the file sets in every run comes before a form's own changes") {
+  const std::string all = R"("set": {"/time/end": 0.4, "/time/step": 1e-5}, )";
+  const std::string good = rows_text(residue_row);
+  const Files files(replaced(good, "\"runs\"", all + "\"runs\""));
+  const PaperRows read = files.paper();
+  const PaperForm& form = paper_run(read, "overfill").forms[paper_reduced];
+  REQUIRE(form.set.size() == 3);
+  CHECK(form.set[0] == std::pair<std::string, std::string>("/time/end", "0.4"));
+  CHECK(form.set[2] == std::pair<std::string, std::string>("/time/end", "0.5"));
+  const nlohmann::json resolved = nlohmann::json::parse(read_case(form.case_path, paper_overrides(form, 1)).resolved);
+  CHECK(resolved["time"]["end"] == 0.5);
+  CHECK(resolved["time"]["step"] == 1e-5);
+  CHECK(message_of(replaced(good, "\"runs\"", "\"set\": {\"time/end\": 1}, \"runs\"")) ==
+        "rows.json /set/time~1end: \"time/end\" is no JSON pointer; must start with /, such as \"/time/end\"");
 }
