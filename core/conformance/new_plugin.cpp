@@ -59,7 +59,7 @@ constexpr const char* kTextKind = "contact-law-text";
 /// of one that has it, others what builds them.
 std::pair<const char*, std::vector<const char*>> shared_files(const std::string& kind) {
   if (kind == kTextKind) return {"contact-law", {"my_plugin.law.h", "try.json"}};
-  if (kind == "particle-force") return {"contact-law", {"CMakeLists.txt"}};
+  if (kind == "particle-force" || kind == "effect") return {"contact-law", {"CMakeLists.txt"}};
   if (kind == "contact-law" || kind == "motion") return {};
   return {"motion", {"CMakeLists.txt"}};
 }
@@ -87,7 +87,7 @@ void check_name(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> new_plugin_kinds() {
-  return {"contact-law", kTextKind, "geometry", "motion", "servo", "particle-force", "sensor"};
+  return {"contact-law", kTextKind, "geometry", "motion", "servo", "particle-force", "sensor", "effect"};
 }
 
 std::vector<std::string> new_plugin(const std::string& name, const std::string& kind, const std::string& folder) {

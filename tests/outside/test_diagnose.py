@@ -80,15 +80,17 @@ class Diagnose(CalxTest):
         (self.dir / "acme").mkdir()
         (self.dir / "acme" / "wide_slot.plugin.json").write_text(json.dumps(manifest))
 
-    def measure(self, widening, shown=1.0, names=("fit", "hold")):
-        """Six repeats each, with other seeds, a smaller step and other friction, read off a balance. shown: its gain."""
+    def measure(self, widening, shown=1.0, names=("fit", "hold"), cause=None, path="acme"):
+        """Six repeats each, with other seeds, a smaller step and other friction, read off a balance. shown: its gain.
+        cause: an effect instead of the wider slot, path: where its plugin is."""
+        cause = cause or {"effect": "acme.wide-slot", "on": {"floor": "floor"}, "parameters": {"widening": widening}}
         noise = random.Random(7)
         for number, name in enumerate(names):
             lines = ["run,time_s,mass_g"]
             for repeat in range(6):
                 sets = {"/seed": 5000 + 100 * number + repeat, "/time/rayleigh_fraction": 0.14, "/contacts/0/parameters/friction": 0.42,
-                        "/effects": [{"effect": "acme.wide-slot", "on": {"floor": "floor"}, "parameters": {"widening": widening}}]}
-                self.runs("drain.json", "-o", "world", "--overwrite", "--plugin-path", "acme",
+                        "/effects": [cause]}
+                self.runs("drain.json", "-o", "world", "--overwrite", "--plugin-path", path,
                           *(w for k, v in sets.items() for w in ("--set", f"{k}={json.dumps(v)}")))
                 rows = [(float(r[0]), 1000 * float(r[1])) for r in self.rows("in hopper", "world")[1:]]
                 for t in TIMES:
@@ -98,9 +100,9 @@ class Diagnose(CalxTest):
                     lines.append(f"{repeat},{t},{shown * mass + noise.gauss(0, 0.03):.4f}")
             (self.dir / f"{name}.csv").write_text("\n".join(lines) + "\n")
 
-    def diagnose(self, *words, study=None):
+    def diagnose(self, *words, study=None, path="acme"):
         self.write(study or STUDY, "study.json")
-        result = self.calx("diagnose", "study.json", "--plugin-path", "acme", *words)
+        result = self.calx("diagnose", "study.json", "--plugin-path", path, *words)
         self.assertEqual(result.code, 0, result.err)
         return json.loads((self.dir / "study.out" / "diagnosis.json").read_text()), result
 
@@ -135,6 +137,25 @@ class Diagnose(CalxTest):
         self.assertLess(float(self.rows("in hopper", "extended")[22][1]), float(self.rows("in hopper", "plain")[22][1]))
         settings = json.loads((self.dir / extension).read_text())
         self.assertAlmostEqual(settings["effects"][0]["parameters"]["widening"], strength["value"], 12)
+
+    def test_an_effect_built_from_the_template_is_found(self):
+        for words in (["cmake", "--install", PLUGINS.parent, "--component", "abi", "--prefix", "prefix"],
+                      [CALX, "plugin", "new", "acme-air", "--kind", "effect"],
+                      ["cmake", "-S", "acme-air", "-B", "air", f"-DCMAKE_PREFIX_PATH={self.dir}/prefix", f"-DCALX={CALX}"],
+                      ["cmake", "--build", "air"], ["ctest", "--test-dir", "air", "--no-tests=error"]):
+            done = subprocess.run(words, cwd=self.dir, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        effect = "org.example.acme-air"
+        self.measure(0, cause={"effect": effect, "parameters": {"share": 0.6}}, path="air/plugins")
+        study = copy.deepcopy(STUDY)
+        # Without the lag of the balance, which delays as slow powder does.
+        study["effects"] = [{"effect": effect, "scale": 0.4}, study["effects"][1]]
+        found, _ = self.diagnose(study=study, path="air/plugins")
+        self.assertEqual((found["verdict"], found["causes"][0]["id"]), ("named", effect), found["sentence"])
+        strength = found["causes"][0]["parameters"][0]
+        self.assertLess(abs(strength["value"] - 0.6), 3 * strength["sd"], strength)
+        self.assertGreater(strength["value"], 3 * strength["sd"])
+        self.assertTrue(found["confirmation"]["passed"])
 
     def test_a_gain_of_the_balance_is_no_fault_of_the_hopper(self):
         self.measure(0, shown=1.12)
