@@ -20,10 +20,12 @@ namespace {
 using infer::Matrix;
 using infer::Vector;
 
-/// Data sets of the self-test per cause and strength, and strengths in scales of the cause.
-constexpr int self_test_studies = 24;
+/// Data sets of the self-test per cause and strength: many where runs are many, for they cost more than a few runs do.
+int self_test_studies(std::size_t budget) { return static_cast<int>(std::clamp<std::size_t>(budget / 8, 8, 24)); }
+/// In scales of the cause.
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
+constexpr int most_looks = 2;  // beyond the first, where it leaves the verdict open
 
 class Diagnoser {
  public:
@@ -89,6 +91,7 @@ class Diagnoser {
     d_.bank = infer::make_bank(d_.model.observables, d_.model.base);
     infer::refine(d_.model, d_.bank, *simulator_, d_.options);
     refine_leaders();
+    look_again();
     if (d_.measured.split_repeats)
       d_.notes.push_back(
           "the study holds no data out, so the later half of the repeats was; data at other conditions would prove "
@@ -98,16 +101,17 @@ class Diagnoser {
   }
 
   /// The leading effect puts the parameters elsewhere than the model without it: base and leading effects are run there
-  /// again, with several seeds, for their signatures carry the verdict. Repeated until strength and parameters stay.
+  /// again, with several seeds, for their signatures carry the verdict. Repeated until strength and parameters stay, by
+  /// the plan at first and then as long as the runs that are left pay for a confirmation, too.
   void refine_leaders() {
     std::size_t last = d_.model.effects.size();
     Vector last_amplitude;
-    for (int round = 0; round < plan_.rounds && !d_.model.effects.empty(); ++round) {
+    for (int round = 0; !d_.model.effects.empty(); ++round) {
+      if (round >= plan_.rounds && (plan_.rounds == 0 || !pays_for(plan_.round_runs + plan_.confirmation_runs(1))))
+        return;
       const infer::Budget budget = infer::error_budget(d_.model, d_.options);
       const infer::Posterior posterior = single_causes(budget);
-      std::size_t leader = 0;
-      for (std::size_t e = 1; e < posterior.fits.size(); ++e)
-        if (posterior.fits[e].odds > posterior.fits[leader].odds) leader = e;
+      const std::size_t leader = leader_of(posterior);
       // Without a trace of an effect, all is where it belongs already.
       if (posterior.fits[leader].odds < 1) return;
       const Vector amplitude = posterior.fits[leader].amplitude;
@@ -116,13 +120,42 @@ class Diagnoser {
                            (u - d_.model.u).norm() < 0.3;
       if (settled) return;
       last = leader, last_amplitude = amplitude;
-      infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
-      keep_foreign_base();
-      infer::Options more = d_.options;
-      more.refined = leaders, more.refined_runs = plan_.leading;
-      infer::refine(d_.model, d_.bank, *simulator_, more);
+      run_leaders(u, leaders);
     }
   }
+
+  /// Where the first look names nothing although something is wrong, runs kept for the confirmation of a name go to
+  /// more seeds of the causes that are left; a bare confirmation stays paid for.
+  void look_again() {
+    const std::size_t cost =
+        plan_.round_runs + static_cast<std::size_t>((rivals - leaders) * plan_.leading) * plan_.cases;
+    for (int look = 0; look < most_looks && plan_.rounds > 0 && !d_.model.effects.empty(); ++look) {
+      if (!pays_for(cost + plan_.confirmation_runs(0))) return;
+      if (infer::diagnose(d_.model, d_.bank, d_.options).verdict == infer::Verdict::named) return;
+      const infer::Budget budget = infer::error_budget(d_.model, d_.options);
+      const infer::Posterior posterior = single_causes(budget);
+      const std::size_t leader = leader_of(posterior);
+      if (posterior.fits[leader].odds < 1) return;
+      run_leaders(nuisances_with(budget, d_.model.signatures[leader] * posterior.fits[leader].amplitude), rivals);
+    }
+  }
+
+  void run_leaders(const Vector& u, int count) {
+    infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
+    keep_foreign_base();
+    infer::Options more = d_.options;
+    more.refined = count, more.refined_runs = plan_.leading;
+    infer::refine(d_.model, d_.bank, *simulator_, more);
+  }
+
+  static std::size_t leader_of(const infer::Posterior& posterior) {
+    std::size_t leader = 0;
+    for (std::size_t e = 1; e < posterior.fits.size(); ++e)
+      if (posterior.fits[e].odds > posterior.fits[leader].odds) leader = e;
+    return leader;
+  }
+
+  bool pays_for(std::size_t runs) const { return d_.ledger.runs.size() + runs <= d_.ledger.planned; }
 
   /// What another program gave is the base at the prior; the cases only say how it changes from there.
   void keep_foreign_base() {
@@ -183,7 +216,8 @@ class Diagnoser {
                      [&](std::size_t a, std::size_t b) { return v.posterior.inclusion[a] > v.posterior.inclusion[b]; });
     order.resize(std::min(order.size(), self_test_causes));
     say("self-test on made-up data");
-    d_.self_test = infer::self_test(d_.model, d_.bank, order, self_test_strengths, self_test_studies, d_.options);
+    d_.self_test =
+        infer::self_test(d_.model, d_.bank, order, self_test_strengths, self_test_studies(study_.budget), d_.options);
     d_.options.calibration = d_.self_test.calibration;
     for (std::size_t e = 0; e < v.probability.size(); ++e)
       v.probability[e] = d_.options.calibration(v.posterior.inclusion[e]);
@@ -247,10 +281,13 @@ class Diagnoser {
   /// The old and the extended case, fitted by runs and then run with new seeds against the held-out data.
   void confirm() {
     const RealModel old{d_.u_before, {}, {}}, named{d_.u_after, d_.explained, d_.amplitudes};
+    // Rounds beyond the plan leave fewer steps to do, and fewer runs to do them.
+    int steps = plan_.steps;
+    while (steps > 0 && !pays_for(plan_.confirmation_runs(steps))) --steps;
     const auto fitted = [&](const char* stage, const RealModel& start) {
       d_.ledger.stage = stage;
       // A poor plan takes what the linear model says.
-      return plan_.steps > 0 ? fit_by_runs(d_, *simulator_, start, plan_.steps, plan_.step_seeds) : RealFit{start, {}};
+      return steps > 0 ? fit_by_runs(d_, *simulator_, start, steps, plan_.step_seeds) : RealFit{start, {}};
     };
     try {
       const RealModel old_fit = fitted("old case fitted by runs", old).model;
