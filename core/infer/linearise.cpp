@@ -15,6 +15,9 @@ constexpr double pi = 3.14159265358979323846;
 // With fewer runs of one seed their median says no more of it than the run without effects.
 constexpr Eigen::Index least_shared = 6;
 constexpr int shared_passes = 2;
+// Beyond so many times the scatter of runs without an effect, or where some cannot be made, runs with it tell nothing
+// of one direction of a vector: a case may not hold its powder together in every direction.
+constexpr double wild = 25;
 
 std::vector<RunPoint> base_points(const Vector& u, int count, std::uint64_t& seed) {
   std::vector<RunPoint> points;
@@ -174,17 +177,26 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
       }
     const Matrix again = simulator.run(more);
     const auto count = static_cast<Eigen::Index>(changed.size());
+    const Vector scatter = model.scatter.covariance(observables).diagonal();
     for (Eigen::Index k = 0; k < count; ++k) {
       // A run that could not be made counts for nothing, unlike one that changed nothing.
-      const int first_made = runs.col(k + 1).allFinite() ? 1 : 0;
-      int made = first_made;
-      Vector sum = model.response(changed[static_cast<std::size_t>(k)]);
+      std::vector<Vector> made;
+      if (runs.col(k + 1).allFinite()) made.push_back(model.response(runs.col(k + 1)));
       for (int s = 1; s < seeds; ++s) {
         const Vector run = again.col((s - 1) * count + k);
-        if (run.allFinite()) sum += model.response(run, model.base_columns.col(s - 1)), ++made;
+        if (run.allFinite()) made.push_back(model.response(run, model.base_columns.col(s - 1)));
       }
-      if (made > first_made)
-        responses[static_cast<std::size_t>(k)] = denoise(sum / made, model.response_variance(made));
+      if (made.empty()) continue;
+      Vector mean = Vector::Zero(rows);
+      for (const Vector& one : made) mean += one / static_cast<double>(made.size());
+      double apart = 0;
+      for (const Vector& one : made) apart += (one - mean).cwiseAbs2().cwiseQuotient(scatter).mean();
+      const bool vector =
+          effects[static_cast<std::size_t>(points[static_cast<std::size_t>(k) + 1].effect)].components > 1;
+      responses[static_cast<std::size_t>(k)] =
+          vector && (static_cast<int>(made.size()) < seeds || apart > wild * static_cast<double>(made.size() - 1))
+              ? Vector(Vector::Zero(rows))
+              : denoise(mean, model.response_variance(static_cast<int>(made.size())));
     }
   }
   const double variance = seeds > 1 ? model.response_variance(seeds) : model.response_variance();

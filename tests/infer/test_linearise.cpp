@@ -123,3 +123,33 @@ TEST_CASE("what all runs of a seed share is taken out of a response, and its noi
   // 880 numbers: a variance known to sqrt(2 / 880); three times that.
   CHECK(square / count == doctest::Approx(stated).epsilon(3 * std::sqrt(2.0 / count)));
 }
+
+namespace {
+
+/// A vector whose first direction moves a number of its own, while runs along the second one scatter by 30 sd.
+class WildSimulator : public SharedSimulator {
+ public:
+  using SharedSimulator::SharedSimulator;
+  Matrix run(const std::vector<RunPoint>& points) override {
+    Matrix out = SharedSimulator::run(points);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (points[k].effect >= 0 && points[k].amplitude[1] != 0) {
+        calx::Random wild(points[k].seed, 7);
+        out.col(static_cast<Eigen::Index>(k)) += 15 * normal_vector(wild, 31);
+      }
+    return out;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a direction in which the runs of a vector contradict each other is left out, the other one kept") {
+  Options options;
+  options.effect_runs = 3, options.step_scales = 40;
+  WildSimulator simulator(5);
+  std::vector<Effect> effects(1);
+  effects[0].components = 2;
+  const LinearModel model = linearise(measured(0), effects, simulator, options);
+  CHECK(model.signatures[0](0, 0) == doctest::Approx(1).epsilon(0.1));
+  CHECK(model.signatures[0].col(1).isZero(0));
+}
