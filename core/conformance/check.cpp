@@ -22,8 +22,9 @@ namespace {
 
 std::vector<Check> every_check() {
   std::vector<Check> all;
-  for (const auto& group : {library_checks(), table_checks(), life_checks(), text_checks(), law_checks(),
-                            geometry_checks(), motion_checks(), force_checks(), sensor_checks(), state_checks()})
+  for (const auto& group :
+       {library_checks(), table_checks(), life_checks(), text_checks(), law_checks(), law_energy_checks(),
+        geometry_checks(), motion_checks(), force_checks(), sensor_checks(), state_checks()})
     all.insert(all.end(), group.begin(), group.end());
   return all;
 }

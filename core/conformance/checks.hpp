@@ -23,6 +23,7 @@ std::vector<Check> table_checks();
 std::vector<Check> life_checks();
 std::vector<Check> text_checks();
 std::vector<Check> law_checks();
+std::vector<Check> law_energy_checks();
 std::vector<Check> state_checks();
 std::vector<Check> geometry_checks();
 std::vector<Check> motion_checks();

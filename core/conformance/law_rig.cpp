@@ -263,4 +263,6 @@ std::vector<LawRig> rigs(Subject& subject) {
   return out;
 }
 
+std::string variants_text(std::size_t count) { return std::to_string(count) + " configurations"; }
+
 }  // namespace calx::conformance

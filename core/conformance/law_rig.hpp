@@ -80,5 +80,7 @@ class LawRig {
 
 /// A rig for each variant that the law takes. Throws Failed where it takes none.
 std::vector<LawRig> rigs(Subject& subject);
+/// "3 configurations".
+std::string variants_text(std::size_t count);
 
 }  // namespace calx::conformance
