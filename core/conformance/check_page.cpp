@@ -1,6 +1,7 @@
 // check_page.cpp: the result of the checks as text, as JSON and as a page with the curves of a law or a motion and the
 // shape of a geometry.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "conformance/conformance.hpp"
 #include "report/page.hpp"
 #include "report/shape_picture.hpp"
+#include "report/units.hpp"
 
 namespace calx {
 namespace {
@@ -33,8 +35,8 @@ Chart chart_of(const std::string& which) {
     chart.y = {"normal force", "N", false, {}};
   } else if (which == "restitution") {
     chart.title = "Restitution over speed";
-    chart.caption = "Head-on impacts of two such spheres; 0: they stay together.";
-    chart.x = {"speed before", "m/s", true, {}};
+    chart.caption = "Head-on impacts of two such spheres; 0: they stay together, above 1: the law creates energy.";
+    chart.x = {"speed before", "m/s", false, {}, true};
     chart.y = {"speed after over before", "1", true, {}};
   } else if (which == "tangential") {
     chart.title = "Tangential loop";
@@ -54,6 +56,17 @@ Chart chart_of(const std::string& which) {
   return chart;
 }
 
+/// In a unit that suits the numbers; one for all curves of a chart.
+void rescale(ChartAxis& axis, std::vector<ChartSeries>& series, std::vector<double> ChartSeries::*values) {
+  double largest = 0;
+  for (const ChartSeries& s : series)
+    for (const double v : s.*values) largest = std::max(largest, std::fabs(v));
+  const DisplayUnit unit = display_unit(axis.unit, largest);
+  axis.unit = unit.unit;
+  for (ChartSeries& s : series)
+    for (double& v : s.*values) v *= unit.factor;
+}
+
 std::string charts(Page& page, const std::vector<CheckCurve>& curves) {
   std::string out;
   for (const char* which : {"normal", "restitution", "tangential", "shift", "turn"}) {
@@ -66,7 +79,10 @@ std::string charts(Page& page, const std::vector<CheckCurve>& curves) {
       series.y = curve.y;
       chart.series.push_back(series);
     }
-    if (!chart.series.empty()) out += page.chart(chart);
+    if (chart.series.empty()) continue;
+    rescale(chart.x, chart.series, &ChartSeries::x);
+    rescale(chart.y, chart.series, &ChartSeries::y);
+    out += page.chart(chart);
   }
   return out.empty() ? "" : "<div class=\"charts\">" + out + "</div>";
 }
@@ -133,19 +149,34 @@ std::string check_json(const CheckReport& report) {
 
 void write_check_page(const CheckReport& report, const std::string& file) {
   Page page("calx plugin check");
-  page.header("<h1>Plugin check</h1><p>" + html_text(totals(report)) + ". Calx " + html_text(version()) + ".</p>");
+  std::string failures;
+  for (const CheckedManifest& manifest : report.manifests)
+    for (const CheckResult& result : manifest.results)
+      if (result.outcome == CheckOutcome::failed)
+        failures += html_check("bad", html_text(result.name + " of " + result.subject), html_text(result.detail));
+  page.header("<h1>Plugin check</h1><p><span class=\"status " + std::string(failures.empty() ? "good" : "bad") + "\">" +
+              html_text(totals(report)) + "</span> Calx " + html_text(version()) + "</p>" +
+              (failures.empty() ? "" : "<ul class=\"checks\">" + failures + "</ul>"));
   std::size_t number = 0;
   for (const CheckedManifest& manifest : report.manifests) {
-    std::vector<std::vector<std::string>> rows = {{"check", "of", "outcome", "meaning", "found"}};
-    for (const CheckResult& result : manifest.results)
-      rows.push_back({html_text(result.name), html_text(result.subject),
-                      result.outcome == CheckOutcome::failed ? "<strong>failed</strong>" : word(result.outcome),
-                      html_text(result.meaning), html_text(result.detail)});
+    // A table for the library and one for each of its plugins.
+    std::string tables;
+    for (std::size_t k = 0; k < manifest.results.size();) {
+      const std::string& subject = manifest.results[k].subject;
+      std::vector<std::vector<std::string>> rows = {{"check", "outcome", "meaning", "found"}};
+      for (; k < manifest.results.size() && manifest.results[k].subject == subject; ++k) {
+        const CheckResult& result = manifest.results[k];
+        rows.push_back({html_text(result.name),
+                        result.outcome == CheckOutcome::failed ? "<strong>failed</strong>" : word(result.outcome),
+                        html_text(result.meaning), html_text(result.detail)});
+      }
+      tables += "<h3>" + html_text(subject) + "</h3>" + html_table(rows, rows[0].size());
+    }
     const std::string name = std::filesystem::path(manifest.path).filename().string();
     const std::string head = name.substr(0, name.find(".plugin.json"));
-    page.section("manifest" + std::to_string(number++), html_text(head), head,
-                 pictures(manifest.shapes) + charts(page, manifest.curves) + html_table(rows, rows[0].size()) + "<p>" +
-                     html_text(manifest.path) + "</p>");
+    page.section(
+        "manifest" + std::to_string(number++), html_text(head), head,
+        pictures(manifest.shapes) + charts(page, manifest.curves) + tables + "<p>" + html_text(manifest.path) + "</p>");
   }
   std::ofstream out(file, std::ios::binary);
   out << page.html();

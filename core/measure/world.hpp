@@ -57,6 +57,7 @@ class WorldView {
   virtual const std::string& part_name(std::size_t part) const = 0;
   virtual bool part_present(std::size_t part) const = 0;
   virtual const Surface& part_surface(std::size_t part) const = 0;
+  /// At time(); of a servo and of a part driven from outside, where it was moved to last.
   virtual Pose part_pose(std::size_t part) const = 0;
   /// Of the last step.
   virtual PartLoad part_load(std::size_t part) const = 0;

@@ -102,7 +102,9 @@ std::string kind_of(const PluginRegistry& registry, const std::vector<std::strin
   std::string folders;
   for (const std::string& folder : search) folders += (folders.empty() ? "" : ", ") + folder;
   throw Error(Fault::plugin, "no plugin " + id + " found in " + (folders.empty() ? "any folder" : folders) + "; " +
-                                 did_you_mean(id, known));
+                                 (nearest_name(id, known).empty()
+                                      ? "name its folder with --plugin-path; calx plugin list shows those found"
+                                      : did_you_mean(id, known)));
 }
 
 const PluginManifest& usable(const PluginRegistry& registry, const std::string& id) {

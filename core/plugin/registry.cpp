@@ -34,6 +34,15 @@ struct PluginRegistry::Impl {
   std::map<std::string, std::shared_ptr<PluginLibrary>> libraries;  // by path
   std::map<std::string, PluginProvenance> loaded;                   // by id
 
+  /// What helps to find id: often the folder above was named, that of a project or of its build.
+  std::string advice(const std::string& id) const {
+    for (const std::string& folder : search)
+      for (const char* below : {"/plugins", "/build/plugins"})
+        for (const PluginManifest& m : discover_plugins({folder + below}))
+          if (m.id == id) return folder + below + " holds it: --plugin-path " + folder + below;
+    return "name its folder with --plugin-path";
+  }
+
   /// The usable manifest of id and kind. Throws Refused or Error.
   const PluginManifest& find(const std::string& id, const std::string& kind, const std::string& where) const {
     const PluginManifest* refused = nullptr;
@@ -55,9 +64,8 @@ struct PluginRegistry::Impl {
     std::string bad;
     for (const PluginManifest& m : manifests)
       if (m.id.empty()) bad += "; " + m.refused;
-    throw Error(Fault::plugin,
-                where + "no plugin " + id + " of the kind " + kind + " found in " + joined(search) +
-                    (near.empty() ? "; name its folder with --plugin-path" : "; did you mean \"" + near + "\"?") + bad);
+    throw Error(Fault::plugin, where + "no plugin " + id + " of the kind " + kind + " found in " + joined(search) +
+                                   (near.empty() ? "; " + advice(id) : "; did you mean \"" + near + "\"?") + bad);
   }
 
   std::shared_ptr<PluginLibrary> library(const PluginManifest& manifest) {
@@ -134,7 +142,9 @@ const calx_descriptor& PluginRegistry::load(const std::string& id, const std::st
 
 InstancePtr PluginRegistry::create(const std::string& id, const std::string& kind, const Parameters& parameters,
                                    const std::string& file, const std::vector<std::string>& ignore_keys) {
-  const calx_descriptor& d = load(id, kind, file, parameters.pointer);
+  // The id stands beside the parameters.
+  const std::string owner = parameters.pointer.substr(0, parameters.pointer.rfind("/parameters"));
+  const calx_descriptor& d = load(id, kind, file, owner);
   const ResolvedParameters resolved = resolve_parameters(parameters, {{d.parameter, d.parameter_count}}, d.extra_schema,
                                                          id + " " + d.version, file, ignore_keys);
   return create_with_values(id, kind, file, parameters.pointer, resolved.values.at(0), resolved.extra_json);

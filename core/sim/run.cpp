@@ -274,10 +274,15 @@ class Run {
     p.particle_steps_per_second = particle_steps_ / std::max(now - start_, 1e-9);
     p.seconds_left = p.share > 0 ? (now - start_) * (1 - p.share) / p.share : 0;
     char text[200];
-    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles  %.2f M particle-steps/s  %s left",
-                  p.time, end, 100 * p.share, p.particles, p.particle_steps_per_second * 1e-6,
-                  clock_text(p.seconds_left).c_str());
+    std::snprintf(text, sizeof text, "t = %.4f of %.4g s  %3.0f %%  %zu particles", p.time, end, 100 * p.share,
+                  p.particles);
     p.text = text;
+    // Before, the time is that of the first lists, or of compiling for a device.
+    if (p.share >= 0.002) {
+      std::snprintf(text, sizeof text, "  %.2f M particle-steps/s  %s left", p.particle_steps_per_second * 1e-6,
+                    clock_text(p.seconds_left).c_str());
+      p.text += text;
+    }
     if (sim_.settings().rest.on) p.text += "  " + std::to_string(sim_.counters().asleep) + " asleep";
     o_.progress(p);
   }

@@ -121,7 +121,9 @@ double Source::requested_mass() const {
     for (const Seed& s : given_) mass += mass_of(s.scale);
     return mass;
   }
-  return settings_.mass > 0 ? settings_.mass : static_cast<double>(settings_.count) * mass_of(settings_.size.scale);
+  if (settings_.mass > 0) return settings_.mass;
+  // Sizes are drawn: what is still to come counts with the mean of them.
+  return delivered_ + static_cast<double>(settings_.count - delivered_count_) * mass_of(settings_.size.scale);
 }
 
 bool Source::due(double t) const { return started() && !exhausted_ && t >= start_ && t >= next_; }

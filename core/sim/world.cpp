@@ -226,6 +226,12 @@ void World::place_parts(double t) {
   }
 }
 
+Pose World::part_pose(std::size_t part) const {
+  // With Euler the engine's pose is that of the last contacts, one step behind the particles.
+  if (walls[part].driven || walls[part].motion < 0) return engine.parts[part].pose;
+  return motions.pose(walls[part].motion, now);
+}
+
 StepTable World::steps_alone(std::uint64_t most) {
   for (const auto& s : sensors)
     if (s->wants_every_step()) most = 1;

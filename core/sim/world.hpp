@@ -83,7 +83,7 @@ struct World final : WorldView, EventView {
   const std::string& part_name(std::size_t part) const override { return c.parts[part].name; }
   bool part_present(std::size_t part) const override { return engine.parts[part].present; }
   const Surface& part_surface(std::size_t part) const override { return *walls[part].surface; }
-  Pose part_pose(std::size_t part) const override { return engine.parts[part].pose; }
+  Pose part_pose(std::size_t part) const override;
   PartLoad part_load(std::size_t part) const override {
     engine.fetch_loads();
     return {engine.parts[part].force, engine.parts[part].torque};

@@ -142,6 +142,15 @@ int guarded(CLI::App& app, const bool& json, int argc, char** argv) {
   }
 }
 
+/// Where the documents lie, for the end of calx --help.
+std::string documents() {
+  std::error_code bad;
+  const auto prefix = std::filesystem::read_symlink("/proc/self/exe", bad).parent_path().parent_path();
+  const auto installed = prefix / "share" / "doc" / "calx";
+  if (std::filesystem::is_directory(installed, bad)) return "Documents: " + installed.string();
+  return "Documents: README.md, docs and abi/README.md of the source tree";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -154,6 +163,7 @@ int main(int argc, char** argv) {
   }
   CLI::App app{"Calx: how powder fills a canister, by discrete elements", "calx"};
   app.require_subcommand(1);
+  app.footer(documents());
   app.set_version_flag("--version", std::string("calx ") + calx::version() + " (" + calx::git_revision() + "), ABI " +
                                         calx::abi_version());
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/nearest.hpp"
@@ -38,6 +39,14 @@ void check(const CheckFlags& flags) {
   if (failed > 0)
     throw Error(Fault::plugin,
                 flags.path + ": " + std::to_string(failed) + (failed == 1 ? " check" : " checks") + " failed");
+}
+
+/// The manifest of an id, where path is none that exists.
+std::string manifest_of(const std::string& path, const std::vector<std::string>& search) {
+  if (std::filesystem::exists(path)) return path;
+  for (const PluginManifest& manifest : discover_plugins(plugin_search_path(search)))
+    if (manifest.id == path) return manifest.path;
+  return path;
 }
 
 }  // namespace
@@ -78,10 +87,12 @@ void add_plugin_command(CLI::App& app) {
   check_command->callback([] { check(flags); });
 
   auto* doctor = command->add_subcommand("doctor", "why is a plugin refused, and what helps?");
-  doctor->add_option("path", path, "a manifest, a library or a folder")->required();
+  doctor->add_option("path", path, "a manifest, a library or a folder, or the id of a plugin that is found")
+      ->required();
+  doctor->add_option("--plugin-path", search, "folder with plugins, searched first; repeatable");
   doctor->callback([] {
     bool all_well = true;
-    print(plugin_doctor_text(path, all_well));
+    print(plugin_doctor_text(manifest_of(path, search), all_well));
     if (!all_well) throw Error(Fault::plugin, path + ": not all is well, see above");
   });
 

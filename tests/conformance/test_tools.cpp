@@ -194,6 +194,16 @@ TEST_CASE("the page holds the shapes of a geometry, each once, and the curves of
   CHECK(holds(read_text(scratch.path("motion.html")), "Displacement over time"));
 }
 
+TEST_CASE("the page begins with what failed") {
+  Scratch scratch;
+  write_check_page(check_plugins(bad_folder("wrong_velocity")), scratch.path("check.html"));
+  const std::string page = read_text(scratch.path("check.html"));
+  const std::size_t first = page.find("velocity of test.wrong-velocity"), charts = page.find("class=\"charts\"");
+  CHECK(holds(page, "<span class=\"status bad\">"));
+  REQUIRE(first != std::string::npos);
+  CHECK(first < charts);
+}
+
 TEST_CASE("a shape is drawn with nearer faces over farther ones, inside and outside apart") {
   // A square seen from outside, above, in front of one seen from inside, below.
   const std::vector<Vec3> vertices = {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1},

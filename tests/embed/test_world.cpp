@@ -102,12 +102,13 @@ TEST_CASE("A part driven along the poses of a motion gives the bits of that moti
   Simulation driven = Simulation::from_text(falling_grains(60, plate("")), with_plugins());
   const std::uint32_t part = driven.part("plate");
   for (int k = 0; k < 5000; ++k) {
+    driven.drive(part, moved.pose(part));  // at the time of the particles, and of the contacts of the next step
     moved.step();
-    driven.drive(part, moved.pose(part));  // of the contacts of the step just done
     driven.step();
   }
   CHECK(driven.digest() == moved.digest());
-  CHECK(driven.pose(part).position[2] == moved.pose(part).position[2]);
+  // The last pose driven is one step old.
+  CHECK(std::abs(driven.pose(part).position[2] - moved.pose(part).position[2]) < 1e-5);
   CHECK(moved.pose(part).position[2] > 0.001);
   const auto a = driven.load(part), b = moved.load(part);
   CHECK(a.force[2] == b.force[2]);

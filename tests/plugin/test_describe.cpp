@@ -77,8 +77,10 @@ TEST_CASE("an unknown or refused id is answered with what is known") {
         "no plugin org.example.sprang found in " + spring_folder + "; did you mean \"org.example.spring\"?");
   CHECK(message_of([] {
           plugin_describe_text("NO.SUCH.ID", {spring_folder, "/nowhere"});
-        }) == "no plugin NO.SUCH.ID found in " + spring_folder + ", /nowhere; known is \"org.example.spring\"");
-  CHECK(message_of([] { plugin_describe_text("a.b", {}); }) == "no plugin a.b found in any folder; none is defined");
+        }) == "no plugin NO.SUCH.ID found in " + spring_folder +
+                  ", /nowhere; name its folder with --plugin-path; calx plugin list shows those found");
+  CHECK(message_of([] { plugin_describe_text("a.b", {}); }) ==
+        "no plugin a.b found in any folder; name its folder with --plugin-path; calx plugin list shows those found");
   Scratch scratch;
   scratch.write("x.plugin.json", manifest("test.x", "x.so"));
   CHECK(message_of([&] { plugin_schema_text("test.x", {scratch.path()}); }) ==

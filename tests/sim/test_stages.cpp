@@ -1,6 +1,8 @@
 // Stages and events: parts come and go, motions start, runs end.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "support/case.hpp"
 
 using namespace calx;
@@ -84,4 +86,21 @@ TEST_CASE("a run ends at its end time or at its end event") {
   // 0.01 m at 2 m/s; asked every 2 ms.
   CHECK(other.time() >= 0.005);
   CHECK(other.time() < 0.0071);
+}
+
+TEST_CASE("a part stands where its motion has it at the time of the particles") {
+  for (const char* integrator : {"euler", "verlet"}) {
+    CaseText c;
+    c.time = R"({"step": 1e-5, "end": 0.1, "integrator": ")" + std::string(integrator) + R"("})";
+    c.parts = R"([{"name": "lift", "geometry": "calx.plane", "material": "sand", "motion": "up",
+                   "parameters": {"point": [0, 0, -0.02], "half_u": 0.1, "half_v": 0.1}}])";
+    c.more =
+        R"("motions": {"up": {"plugin": "calx.travel", "start": {"time": 0.0102},
+                          "parameters": {"displacement": [0, 0, 0.02], "speed": 0.5}}})";
+    Simulation sim(with_given(c, "ball", {{{}, {}, {}, {}}}), test_options());
+    CHECK(sim.world().part_pose(0).shift.z == 0);
+    while (sim.time() < 0.03) sim.step();
+    CHECK(std::abs(sim.world().part_pose(0).shift.z - 0.5 * (sim.time() - 0.0102)) < 1e-12);
+    CHECK(sim.world().part_pose(0).velocity.z == 0.5);
+  }
 }

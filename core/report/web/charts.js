@@ -233,13 +233,15 @@
       x.domain([middle - half, middle + half]);
       y.domain([range.y[0], range.y[0] + high / per]);
     }
-    var f = frame(node, spec, width, height, margin);
-    x.range([0, f.w]);
-    y.range([f.h, 0]);
     if (!spec.equal) {
       if (range.y[0] !== 0) y.domain([range.y[0] - 0.04 * (range.y[1] - range.y[0]), range.y[1]]);
       y.domain([y.domain()[0], y.domain()[1] + 0.06 * (range.y[1] - range.y[0])]).nice();
+      // Room for long numbers, so that they do not run into the title of the axis.
+      margin.left = Math.max(margin.left, 30 + 7 * d3.max(y.ticks(8).map(tickText(y, 8)), function (s) { return s.length; }));
     }
+    var f = frame(node, spec, width, height, margin);
+    x.range([0, f.w]);
+    y.range([f.h, 0]);
     legend(node, spec);
     axisFrame(f, spec, margin);
     var id = "clip" + (++serial);

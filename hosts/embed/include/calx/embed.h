@@ -109,6 +109,7 @@ typedef struct calx_sim_pose {
 } calx_sim_pose;
 /* The part's number, from 0, in the order of the case. */
 CALX_EXPORT int32_t CALX_CALL calx_sim_part(const calx_sim* sim, const char* name, uint32_t* part);
+/* Where it stands at the time of the particles; a servo and a part that is driven where they were moved to last. */
 CALX_EXPORT int32_t CALX_CALL calx_sim_part_pose(const calx_sim* sim, uint32_t part, calx_sim_pose* out);
 /* Force, N, and torque about the part's centre, N m, that the particles exerted on it in the last step. */
 CALX_EXPORT int32_t CALX_CALL calx_sim_part_load(const calx_sim* sim, uint32_t part, double force[3], double torque[3]);
