@@ -13,6 +13,7 @@
 #include "study/confirm.hpp"
 #include "study/diagnosis_plan.hpp"
 #include "study/generic_fit.hpp"
+#include "study/hints.hpp"
 #include "study/next_measurements.hpp"
 
 namespace calx {
@@ -56,12 +57,12 @@ class Diagnoser {
                          " runs would try all of them");
     if (d_.diagnosis.verdict == infer::Verdict::named) check_name();
     if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
-    if (d_.diagnosis.verdict == infer::Verdict::unknown)
-      describe_unknown();
+    if (d_.diagnosis.verdict == infer::Verdict::unknown) describe_unknown();
     compare();
     judge_claims(study_, d_);
     if (d_.diagnosis.verdict != infer::Verdict::named && !possible.empty())
       d_.next = weigh_measurements(study_, possible, d_, executor_, sink_);
+    d_.hints = hints_of(study_, d_);
     return std::move(d_);
   }
 

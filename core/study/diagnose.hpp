@@ -49,6 +49,7 @@ struct GenericFit {
   std::vector<Trial> tried;  // best first
   bool accepted = false;     // the first of them
   std::string reason;        // why it is accepted or refused
+  double fit_p = 1;          // of what is left with it
   double gain = 0;           // ln of the held-out likelihood ratio as foretold, before any run confirms it
   infer::Vector u;           // nuisance parameters with it
   infer::Vector amplitude;
@@ -79,6 +80,7 @@ struct StudyDiagnosis {
   std::vector<Claim> claims;
   RunLedger ledger;
   std::vector<std::string> notes;
+  std::vector<std::string> hints;  // what the reader can do next
 };
 
 /// The result depends on the study, its seed and the figures of the runs alone, not on jobs, on what was cached or on
@@ -88,8 +90,8 @@ struct StudyDiagnosis {
 StudyDiagnosis diagnose_study(const Study& study, Executor& executor, const ProgressSink& sink);
 
 /// Writes the generic terms of the study as text-only plugins to folder/generic and puts that on its plugin path. To be
-/// called before the executor is made; does nothing for a study without generic terms. Throws Error(Fault::settings) for
-/// terms that cannot be, Error(Fault::files).
+/// called before the executor is made; does nothing for a study without generic terms. Throws Error(Fault::settings)
+/// for terms that cannot be, Error(Fault::files).
 void prepare_generic_terms(Study& study, const std::string& folder);
 
 /// What a person wants to know first, as text of some lines.

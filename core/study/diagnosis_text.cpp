@@ -83,6 +83,7 @@ class DiagnosisText {
     j["common_random_numbers"] = d_.model.common_numbers;
     j["assumptions"] = study_.assumptions;
     j["notes"] = d_.notes;
+    j["hints"] = d_.hints;
     return j;
   }
 
@@ -318,6 +319,7 @@ class DiagnosisText {
             {"accepted", g.accepted},
             {"reason", g.reason},
             {"parameters", {strength_of(best, g.amplitude, g.amplitude_sd)}},
+            {"fit_p", g.fit_p},
             {"held_out_log_score", g.gain},
             {"confirmation", confirmation(g.confirmation)},
             {"tried", tried}};
@@ -435,6 +437,7 @@ std::string diagnosis_summary(const Study& study, const StudyDiagnosis& d) {
   }
   for (const Claim& c : d.claims) out += "claim: " + c.sentence + "\n";
   for (const std::string& n : d.notes) out += "note: " + n + "\n";
+  for (const std::string& h : d.hints) out += "hint: " + h + "\n";
   return out;
 }
 

@@ -31,7 +31,8 @@ class Translator {
 
   std::string all() {
     const std::string out = sum();
-    if (peek() != '\0') refuse(std::string("\"") + peek() + "\" is not expected; an operator or the end would be right");
+    if (peek() != '\0')
+      refuse(std::string("\"") + peek() + "\" is not expected; an operator or the end would be right");
     return out;
   }
 

@@ -104,9 +104,8 @@ class GenericTrial {
         infer::weigh(own.model, own.bank, infer::Metric(posed.covariance, posed.residual), singles);
     const std::vector<infer::SingleFit>& fits = own.diagnosis.posterior.fits;
     for (std::size_t e = 0; e < fits.size(); ++e) out.tried.push_back({own.kept[e], fits[e].odds});
-    std::stable_sort(out.tried.begin(), out.tried.end(), [](const GenericFit::Trial& a, const GenericFit::Trial& b) {
-      return a.log_odds > b.log_odds;
-    });
+    std::stable_sort(out.tried.begin(), out.tried.end(),
+                     [](const GenericFit::Trial& a, const GenericFit::Trial& b) { return a.log_odds > b.log_odds; });
     const std::size_t best = index_of(own, out);
     const infer::SingleFit& fit = fits[best];
     out.amplitude = fit.amplitude, out.amplitude_sd = fit.sd;
@@ -116,10 +115,20 @@ class GenericTrial {
     out.u = infer::fit_nuisance(own.model, less, d_.options).u;
     own.diagnosis.gain = infer::held_out_gain(own.model, budget, {{best, fit.amplitude, fit.shape_factor}}, d_.options);
     out.gain = own.diagnosis.gain.log_score;
+    // What is left with it must be what chance leaves, as for a name.
+    const infer::Posed all = infer::pose(own.model, budget.systematic, budget.both, d_.options);
+    const infer::Freedom freedom = infer::freedom_of(own.model, {{best, fit.amplitude, fit.shape_factor}}, d_.options);
+    const Matrix free = freedom.columns * freedom.columns.transpose() + freedom.own;
+    own.diagnosis.after = infer::check_fit(own.model, own.bank, all.covariance - budget.both.noise + free,
+                                           budget.both.noise, all.residual, d_.options, 2);
+    out.fit_p = own.diagnosis.after.p;
     const double needed = least_odds + std::log(static_cast<double>(fits.size()));
     if (out.tried[0].log_odds < needed)
       out.reason = "the likeliest of " + std::to_string(fits.size()) + " generic terms has log odds of " +
                    rounded(out.tried[0].log_odds) + "; " + rounded(needed) + " are needed";
+    else if (out.fit_p < d_.options.fit_above)
+      out.reason = "the likeliest of " + std::to_string(fits.size()) + " generic terms, " +
+                   own.library.candidates[out.tried[0].candidate].info.id + ", does not fit the data";
     else if (out.gain < d_.options.gain_above)
       out.reason = "its gain on the held-out data, " + rounded(out.gain) + " nats, is in the noise; " +
                    rounded(d_.options.gain_above) + " are needed";
@@ -130,7 +139,8 @@ class GenericTrial {
     try {
       const auto fitted = [&](const char* stage, const RealModel& start) {
         d_.ledger.stage = stage;
-        return plan_.steps > 0 ? fit_by_runs(own, simulator_, start, plan_.steps, plan_.step_seeds) : RealFit{start, {}};
+        return plan_.steps > 0 ? fit_by_runs(own, simulator_, start, plan_.steps, plan_.step_seeds)
+                               : RealFit{start, {}};
       };
       const RealFit old = fitted("old case fitted by runs", {d_.u_before, {}, {}});
       const RealFit extended = fitted("generic term fitted by runs", {out.u, {best}, {out.amplitude}});

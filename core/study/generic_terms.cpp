@@ -134,10 +134,11 @@ std::string manifest_text(const GenericTerm& term) {
     roles.push_back({{"name", "wall"}, {"kind", "material"}, {"used_by", "parts"}, {"doc", "the walls concerned"}});
   const Json parameters = {{"amount", "{amount}"}};
   const Json edit =
-      is_drag ? Json{{"op", "append"}, {"to", "/forces"}, {"value", {{"plugin", term.id()}, {"parameters", parameters}}}}
-              : Json{{"op", "append"},
-                     {"to", std::string("/contacts/{powder}|") + (on_wall ? "{wall}" : "{powder}") + "/laws"},
-                     {"value", {{"law", term.id()}, {"parameters", parameters}}}};
+      is_drag
+          ? Json{{"op", "append"}, {"to", "/forces"}, {"value", {{"plugin", term.id()}, {"parameters", parameters}}}}
+          : Json{{"op", "append"},
+                 {"to", std::string("/contacts/{powder}|") + (on_wall ? "{wall}" : "{powder}") + "/laws"},
+                 {"value", {{"law", term.id()}, {"parameters", parameters}}}};
   const Json effect = {{"parameters",
                         {{{"name", "amount"},
                           {"unit", "1"},
@@ -155,9 +156,9 @@ std::string manifest_text(const GenericTerm& term) {
                  {"summary", "Generic term, no named cause: " + target.doc + " is amount * (" + term.formula + ")."},
                  {"text", symbol_of(term) + ".law.h"},
                  {"effect", effect}};
-  const Json out = {{"calx_plugin", 1},      {"abi", {{"major", 1}, {"minor", 0}}},
-                    {"version", "1.0.0"},    {"vendor", "calx diagnose"},
-                    {"license", "Apache-2.0"}, {"plugins", {plugin}},
+  const Json out = {{"calx_plugin", 1},         {"abi", {{"major", 1}, {"minor", 0}}},
+                    {"version", "1.0.0"},       {"vendor", "calx diagnose"},
+                    {"license", "Apache-2.0"},  {"plugins", {plugin}},
                     {"requires", Json::array()}};
   return out.dump(2) + "\n";
 }
@@ -165,7 +166,7 @@ std::string manifest_text(const GenericTerm& term) {
 GenericTerm usual(const char* name, const char* target, const char* formula, double scale) {
   GenericTerm out{name, target, formula, "", scale};
   const Json text = formula;
-  Document document(Parameters{text.dump(), "", ""}, "");
+  Document document(Parameters{text.dump(), "", "/"}, "");
   out.dialect = dialect_formula(Node(document, document.root(), ""), target_of(target).variables);
   return out;
 }
@@ -224,8 +225,9 @@ std::vector<GenericTerm> read_generic_terms(const Study& study) {
   for (const Node& item : node.items("true, or a list of generic terms")) {
     GenericTerm term;
     if (item.json().is_string())
-      term = *std::find_if(usual_generic_terms().begin(), usual_generic_terms().end(),
-                           [name = item.name_of("generic term", known)](const GenericTerm& t) { return t.name == name; });
+      term =
+          *std::find_if(usual_generic_terms().begin(), usual_generic_terms().end(),
+                        [name = item.name_of("generic term", known)](const GenericTerm& t) { return t.name == name; });
     else
       term = read_own(item);
     for (const GenericTerm& other : out)
