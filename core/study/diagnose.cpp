@@ -12,6 +12,8 @@
 #include "study/claims.hpp"
 #include "study/confirm.hpp"
 #include "study/diagnosis_plan.hpp"
+#include "study/generic_fit.hpp"
+#include "study/hints.hpp"
 #include "study/next_measurements.hpp"
 
 namespace calx {
@@ -55,12 +57,12 @@ class Diagnoser {
                          " runs would try all of them");
     if (d_.diagnosis.verdict == infer::Verdict::named) check_name();
     if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
-    if (d_.diagnosis.verdict == infer::Verdict::unknown)
-      d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
+    if (d_.diagnosis.verdict == infer::Verdict::unknown) describe_unknown();
     compare();
     judge_claims(study_, d_);
     if (d_.diagnosis.verdict != infer::Verdict::named && !possible.empty())
       d_.next = weigh_measurements(study_, possible, d_, executor_, sink_);
+    d_.hints = hints_of(study_, d_);
     return std::move(d_);
   }
 
@@ -268,6 +270,12 @@ class Diagnoser {
       withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
     else
       check_name();
+  }
+
+  /// What is not in the library, as a shape of the observables and, where the study asks for it, as a generic term.
+  void describe_unknown() {
+    d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
+    d_.generic = fit_generic_term(study_, d_, *simulator_, plan_);
   }
 
   void withdraw(const std::string& why) {

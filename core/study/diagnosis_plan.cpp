@@ -4,6 +4,8 @@
 #include <array>
 
 #include "base/error.hpp"
+#include "study/generic_fit.hpp"
+#include "study/generic_terms.hpp"
 
 namespace calx {
 namespace {
@@ -44,6 +46,7 @@ std::size_t runs_of(const Study& study, const Library& library, const DiagnosisP
   }
   runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
   if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
+  runs += read_generic_terms(study).size() * generic_seeds * cases;
   const int fitted = plan.steps > 0 ? (1 + plan.steps) * plan.step_seeds : 0;
   runs += 2 * (static_cast<std::size_t>(fitted) + plan.confirmed) * cases;
   return runs + full_runs * used_cases(study, study.observables, true);

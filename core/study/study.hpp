@@ -64,6 +64,7 @@ struct Study {
   std::uint64_t seed = 1;
   std::vector<std::string> assumptions;
   std::string effects = "[]", experiments = "[]", roles = "{}", claims = "[]";  // JSON text that the diagnosis reads
+  std::string generic_terms = "[]";                                             // likewise
   bool named_effects_only = false;                                              // of the library of candidate causes
   std::string text;                                                             // of the file, for its hash
 };

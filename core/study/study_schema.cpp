@@ -1,5 +1,6 @@
 // The JSON Schema of a study. Keys follow study.cpp and measured.cpp; tests hold them together.
 #include "config/schema.hpp"
+#include "study/generic_terms.hpp"
 #include "study/study.hpp"
 
 namespace calx {
@@ -139,6 +140,17 @@ Json experiment() {
       {"name", "sd"});
 }
 
+Json generic_term() {
+  std::vector<std::string> targets;
+  for (const GenericTarget& t : generic_targets()) targets.push_back(t.name);
+  return object("a force known by a formula alone",
+                {{"name", text("small letters, digits and -")},
+                 {"on", choice("where it acts", targets)},
+                 {"formula", text("of speed, load, stress and time of a contact; of speed, time, x, y, z for drag")},
+                 {"scale", number("a typical amplitude", "1", above_zero)}},
+                {"name", "on", "formula", "scale"});
+}
+
 Json claim() {
   return object(
       "a cause that somebody claims",
@@ -180,6 +192,9 @@ std::string study_schema() {
        {"library", preset(choice("of a diagnosis: all effects of Calx, or those named", {"calx", "named"}), "calx")},
        {"roles", map("of a diagnosis: names in the cases by role, for every effect", text("a name"))},
        {"experiments", list("of a diagnosis: measurements that could be made next", experiment())},
+       {"generic_terms", any_of("of a diagnosis: terms by formula, tried where the cause is not in the library",
+                                {Json{{"type", "boolean"}, {"description", "true: those that come with Calx"}},
+                                 list("some of them", any_of("a term", {text("its name"), generic_term()}))})},
        {"claims", list("of a diagnosis: causes that somebody claims", claim())}},
       {"calx_study", "cases", "parameters", "observables"}));
   return out.dump(2) + "\n";
