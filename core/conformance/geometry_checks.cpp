@@ -140,7 +140,7 @@ Halfway halfway_corners(const Surface& surface) {
   return out;
 }
 
-/// "; 1 corner lies halfway ..."; empty where none does.
+/// "; at 1 place (first at ...) a corner lies halfway ..."; empty where none does.
 std::string halfway_text(const Surface& surface) {
   const Halfway found = halfway_corners(surface);
   if (found.count == 0) return "";

@@ -72,7 +72,8 @@ Json measured() {
               {"repeats", whole("how many measurements a value is the mean of", 1)},
               {"file", text("path of a CSV file, from this file; its columns end in their unit")},
               {"x", text("column of the places of a curve")},
-              {"y", text("column of the measured values")},
+              {"y", text("column of the measured values, or of the places along y of a map")},
+              {"z", text("column of the heights of a map")},
               {"repeat", text("column that tells repeats apart")},
               {"sd", sd},
               {"relative", number("scatter of one repeat as a share of the value", "1", above_zero)},
@@ -85,13 +86,14 @@ Json measured() {
 Json observable() {
   std::vector<std::string> kinds;
   for (const auto& kind : observable_kinds()) kinds.push_back(kind.first);
-  return object(
+  Json out = object(
       "something that was measured, and the sensor that gives it",
       {{"name", text("what it is called")},
        {"kind", choice("what was measured", kinds)},
        {"case", text("the case of the study that gives it")},
        {"sensor", text("a sensor of that case")},
        {"column", text("a column of the sensor")},
+       {"field", text("instead of a column: a map of heights of the sensor, \"height\" for instance")},
        {"against", text("of a curve: the column its places belong to, \"time_s\" for instance")},
        {"unit", text("unit of the measured values, \"1\" for none")},
        {"use", preset(choice("fitted, or only predicted", {"fit", "hold-out"}), "fit")},
@@ -104,7 +106,9 @@ Json observable() {
                              {"values", list("one per place", quantity("in the observable's unit"))},
                              {"sd", quantity("from seed to seed", {{"minimum", 0}})}})},
        {"conditions", map("what else was set in the laboratory", quantity("in SI or a unit of its own"))}},
-      {"name", "kind", "case", "sensor", "column", "unit", "measured"});
+      {"name", "kind", "case", "sensor", "unit", "measured"});
+  out["oneOf"] = {{{"required", {"column"}}}, {{"required", {"field"}}}};
+  return out;
 }
 
 Json effect() {

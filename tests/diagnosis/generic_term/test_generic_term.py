@@ -1,5 +1,5 @@
 """What is not in the library, described by a generic term: a study whose library holds two faults of the load cell only,
-measured on a hopper whose grains are moist, and the same hopper with a fault of the scale that no force makes."""
+measured on a hopper whose grains are moist, and the same hopper with a loss that none of the terms can make."""
 import csv
 import json
 import os
@@ -83,8 +83,8 @@ class GenericTerm(unittest.TestCase):
         page = (out / "report.html").read_text()
         self.assertIn("A generic term, which is no named cause", page)
 
-    def test_a_fault_that_no_force_makes_is_not_described_by_one(self):
-        d = self.diagnosed("scale", [], lambda t: 1.5 if t > 0.4 else 0, TERMS)
+    def test_a_loss_that_no_pull_or_drag_makes_is_described_by_none(self):
+        d = self.diagnosed("scale", [], lambda t: -1.5 if t > 0.4 else 0, TERMS)
         self.assertEqual(d["verdict"], "unknown")
         self.assertFalse(d["generic_term"]["accepted"], d["generic_term"])
         self.assertIsNone(d["extension"])
