@@ -3,6 +3,7 @@
 
 #include "base/nearest.hpp"
 #include "config/case_reader.hpp"
+#include "config/sensor_kinds.hpp"
 
 namespace calx {
 
@@ -119,9 +120,9 @@ void CaseReader::read_sensors(Object& root) {
       if (other.name == s.name) name.fail("another sensor is called \"" + s.name + "\"; names of sensors must differ");
     const auto plugin = object.find("plugin");
     if (plugin && object.has("kind")) plugin->fail("a sensor has a \"kind\" or a \"plugin\"; must have one");
-    s.kind = plugin
-                 ? plugin->text("the id of a sensor")
-                 : object.need("kind", "the kind of sensor, such as \"mass\", or \"plugin\"").text("a kind of sensor");
+    const Node kind = plugin ? *plugin : object.need("kind", "the kind of sensor, such as \"mass\", or \"plugin\"");
+    s.kind = kind.text(plugin ? "the id of a sensor" : "a kind of sensor");
+    if (!is_builtin_sensor(s.kind) && s.kind.find('.') == std::string::npos) kind.fail(unknown_sensor_kind(s.kind));
     s.every = object.need("every", "the simulated time between samples in s").number("s", Allow::above_zero);
     s.parameters = node.parameters();
     Json own = node.json();

@@ -1,6 +1,7 @@
 // The JSON Schema of a case. Keys and defaults follow the readers of this module; tests hold the two together.
 #include "config/config.hpp"
 #include "config/schema.hpp"
+#include "config/sensor_kinds.hpp"
 
 namespace calx {
 namespace {
@@ -188,11 +189,18 @@ Json part() {
 }
 
 Json sensor() {
+  std::vector<Json> kinds;
+  for (const SensorKind& each : sensor_kinds()) {
+    const std::string keys = each.keys;
+    kinds.push_back(
+        {{"const", each.name}, {"description", std::string(each.measures) + (keys.empty() ? "" : "; keys: " + keys)}});
+  }
+  kinds.push_back({{"type", "string"}, {"pattern", "\\."}, {"description", "the id of a sensor plugin"}});
   Json out = {{"type", "object"},
               {"description", "samples a figure into series/<name>.csv; further keys belong to its kind"},
               {"properties",
                {{"name", text("unique name")},
-                {"kind", text("a built-in kind, or the id of a sensor plugin")},
+                {"kind", any_of("a built-in kind, or the id of a sensor plugin", kinds)},
                 {"plugin", text("id of a sensor plugin, instead of kind")},
                 {"every", number("simulated time between samples", "s", above_zero)},
                 {"region", any_of("name of a region, or one written here", {text("name"), ref("region")})},

@@ -118,10 +118,10 @@ ResolvedParameters resolve_parameters(const Parameters& parameters, const std::v
       } else if (e.field->flags & CALX_FIELD_REQUIRED) {
         // The unit of a choice is the list of its names.
         const std::string kind = !e.choices.empty()                  ? ", one of " + quoted_list(e.choices)
-                                 : std::string(e.field->unit) != "1" ? std::string(" in ") + e.field->unit
+                                 : std::string(e.field->unit) != "1" ? std::string(", ") + e.field->unit
                                                                      : "";
         document.fail(parameters.pointer + pointer_token(e.name),
-                      "is missing; " + owner + " needs the " + e.field->doc + kind);
+                      "is missing; " + owner + " needs " + e.name + kind + ": " + e.field->doc);
       } else {
         for (std::uint32_t k = 0; k < e.rows; ++k) values[e.first + k] = e.field[k].preset;
         if (std::find(out.presets_used.begin(), out.presets_used.end(), e.name) == out.presets_used.end())

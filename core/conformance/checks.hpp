@@ -15,6 +15,7 @@ struct Check {
   const char* kind;  // of the plugins it is for; "" each plugin, whatever its kind; null: once for each library
   bool random;       // draws inputs from the seed
   std::string (*run)(Subject&);
+  bool compiles = false;  // compilers speak in it, which is no word of the plugin
 };
 
 std::vector<Check> library_checks();
@@ -22,6 +23,7 @@ std::vector<Check> table_checks();
 std::vector<Check> life_checks();
 std::vector<Check> text_checks();
 std::vector<Check> law_checks();
+std::vector<Check> law_energy_checks();
 std::vector<Check> state_checks();
 std::vector<Check> geometry_checks();
 std::vector<Check> motion_checks();

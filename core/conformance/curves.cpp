@@ -26,7 +26,7 @@ CheckCurve press(const LawRig& rig) {
 CheckCurve impacts(const LawRig& rig) {
   CheckCurve curve{"restitution", rig.name(), {}, {}};
   for (double speed = 0.01; speed < 2.1; speed *= std::sqrt(2.0)) {
-    const LawRig::Impact impact = rig.impact(speed, rig.dt(), 0.5, 20000 * rig.dt());
+    const LawRig::Impact impact = rig.impact(speed, rig.dt(), 0.5, rig.reach() / speed + 20000 * rig.dt());
     curve.x.push_back(speed);
     curve.y.push_back(std::max(0.0, impact.restitution));  // 0: they stay together
   }

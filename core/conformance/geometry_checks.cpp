@@ -110,8 +110,49 @@ std::size_t rims(const Surface& surface) {
   return open;
 }
 
+/// Corners that lie on an edge of one triangle, between its ends: where one triangle's edge meets two of others.
+struct Halfway {
+  std::size_t count = 0;
+  Vec3 first;
+};
+
+Halfway halfway_corners(const Surface& surface) {
+  const geometry::Elements& e = surface.elements();
+  const double near = 2 * geometry::weld_share * e.size;
+  std::vector<Vec3> corners;
+  for (const geometry::Vertex& vertex : e.vertices)
+    if (vertex.count > 0) corners.push_back(vertex.position);
+  const auto left_of = [](const Vec3& a, const Vec3& b) { return a.x < b.x; };
+  std::sort(corners.begin(), corners.end(), left_of);
+  Halfway out;
+  for (const geometry::Edge& edge : e.edges) {
+    if (edge.count != 1) continue;
+    const Vec3 end = edge.start + edge.length * edge.direction, margin{near, 0, 0};
+    const auto from =
+        std::lower_bound(corners.begin(), corners.end(), std::min(edge.start, end, left_of) - margin, left_of);
+    const auto to = std::upper_bound(from, corners.end(), std::max(edge.start, end, left_of) + margin, left_of);
+    for (auto at = from; at != to; ++at) {
+      const double t = dot(*at - edge.start, edge.direction);
+      if (t <= near || t >= edge.length - near || norm(*at - edge.start - t * edge.direction) > near) continue;
+      if (out.count++ == 0) out.first = *at;
+    }
+  }
+  return out;
+}
+
+/// "; at 1 place (first at ...) a corner lies halfway ..."; empty where none does.
+std::string halfway_text(const Surface& surface) {
+  const Halfway found = halfway_corners(surface);
+  if (found.count == 0) return "";
+  return "; at " + std::to_string(found.count) + (found.count == 1 ? " place" : " places") + " (first at (" +
+         short_number(found.first.x) + ", " + short_number(found.first.y) + ", " + short_number(found.first.z) +
+         ") m) a corner lies halfway on an edge of another triangle, which so counts as a rim: split that triangle "
+         "there";
+}
+
 std::string mesh(Subject& s) {
   std::size_t open = 0;
+  std::string halfway;
   for (const Built& one : every_shape(s)) {
     MeshFaults faults = one.surface.faults();
     const std::size_t edges = faults.open_edges + rims(one.surface);
@@ -119,12 +160,14 @@ std::string mesh(Subject& s) {
     faults.open_edges = 0;
     const std::string text = faults.describe();
     require(text.empty(), one.name + ": " + text + "; wind triangles counter-clockwise seen from outside, each once");
+    if (edges > 0 && halfway.empty()) halfway = halfway_text(one.surface);
     require(edges == 0 || s.manifest().open,
             one.name + ": the surface is open, with " + std::to_string(one.surface.faults().open_edges) +
-                " open edges of triangles and " + std::to_string(edges - one.surface.faults().open_edges) +
-                " rims; close it, or say \"surface\": \"open\" in the plugin's entry of the manifest if that is meant");
+                " open edges of triangles and " + std::to_string(edges - one.surface.faults().open_edges) + " rims" +
+                halfway +
+                "; close it, or say \"surface\": \"open\" in the plugin's entry of the manifest if that is meant");
   }
-  return open ? "open on purpose" : "closed";
+  return open ? "open on purpose" + halfway : "closed";
 }
 
 }  // namespace

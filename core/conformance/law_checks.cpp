@@ -1,4 +1,4 @@
-// law_checks.cpp: numbers of a contact law: blocks, symmetry, frame, edges, energy, threads.
+// law_checks.cpp: numbers of a contact law: blocks, symmetry, frame, edges, threads.
 #include <time.h>
 
 #include <algorithm>
@@ -34,8 +34,6 @@ Worn worn(Subject& s, const LawRig& rig, std::size_t count) {
   out.state = rig.evaluate<double>(out.rows, out.state).state;
   return out;
 }
-
-std::string variants_text(std::size_t count) { return std::to_string(count) + " configurations"; }
 
 std::string finite(Subject& s) {
   const auto all = rigs(s);
@@ -255,94 +253,6 @@ std::string no_time(Subject& s) {
   return variants_text(all.size());
 }
 
-/// One closed path of pressing, shearing and rolling from separation to separation: energy got out of the contact over
-/// the energy put into it.
-double created(Subject& s, const LawRig& rig, bool roll) {
-  constexpr int kLegs = 5, kSteps = 2000;
-  const double d = rig.overlap(), dt = rig.dt(), gap = 1.05 * rig.reach();
-  struct Corner {
-    double overlap, x, y, turn_x, turn_y;
-  };
-  std::vector<Corner> corners = {{-gap, 0, 0, 0, 0}};
-  for (int k = 1; k < kLegs; ++k) {
-    Corner c = {d * s.uniform(0.1, 1), d * s.uniform(-0.2, 0.2), d * s.uniform(-0.2, 0.2), 0, 0};
-    if (roll) {
-      c.turn_x = 0.2 * d / LawRig::radius * s.uniform(-1, 1);
-      c.turn_y = 0.2 * d / LawRig::radius * s.uniform(-1, 1);
-    }
-    corners.push_back(c);
-  }
-  corners.push_back({-gap, corners.back().x, corners.back().y, corners.back().turn_x, corners.back().turn_y});
-  std::vector<double> state = rig.fresh(1);
-  LawRig::Wrench before;
-  double sum = 0, put_in = 0;
-  for (std::size_t k = 1; k < corners.size(); ++k) {
-    const Corner &a = corners[k - 1], &b = corners[k];
-    const double press = (b.overlap - a.overlap) / kSteps, x = (b.x - a.x) / kSteps, y = (b.y - a.y) / kSteps;
-    const double wx = (b.turn_x - a.turn_x) / kSteps, wy = (b.turn_y - a.turn_y) / kSteps;
-    for (int n = 1; n <= kSteps; ++n) {
-      const double overlap = a.overlap + press * n;
-      LawRig::Wrench now;
-      // Contacts that do not overlap are evaluated for laws that reach only.
-      if (gap > 0 || overlap > 1e-12 * d)
-        now = rig.at(overlap, {x / dt, y / dt, -press / dt}, {wx / dt, wy / dt, 0}, state, dt);
-      const Vec3 f = 0.5 * (now.force + before.force), m = 0.5 * (now.moment + before.moment);
-      const double work = f.z * press - f.x * x - f.y * y - m.x * wx - m.y * wy;
-      sum += work;
-      put_in += std::max(work, 0.0);
-      before = now;
-    }
-  }
-  return put_in > 0 ? -sum / put_in : 0;
-}
-
-std::string energy(Subject& s) {
-  const auto all = rigs(s);
-  double worst = -1e300;
-  for (const LawRig& rig : all) {
-    if (rig.law().is_active()) continue;
-    for (int path = 0; path < 12; ++path) {
-      const double share = created(s, rig, path % 2 != 0);
-      worst = std::max(worst, share);
-      // The trapezoid errs by the jump of slope times half a step where a spring begins to slide, 1 / 4000 of a leg's
-      // work, at most a few times a path.
-      require(share < 1e-3, rig.name() + ": a closed path of pressing and shearing gives " + short_number(100 * share) +
-                                " % more energy than was put in; if that is meant, set CALX_LAW_ACTIVE");
-    }
-  }
-  if (worst < -1e299) throw Skipped{"the law is CALX_LAW_ACTIVE: it may create energy"};
-  return variants_text(all.size()) + ", 12 paths each, least loss " + short_number(-100 * worst) + " %";
-}
-
-std::string stable_step(Subject& s) {
-  const auto all = rigs(s);
-  double worst = 0;
-  for (const LawRig& rig : all) {
-    if (!rig.table().stable_dt) throw Skipped{"it states no stable step; runs then rely on the Rayleigh limit"};
-    const double m = 0.5 * rig.mass();
-    // A term that does not push stands beside a spring that a hundredth of the radius stops; inverse squares add.
-    std::vector<double> state = rig.fresh(1);
-    const bool pushes = rig.at(rig.overlap(), {}, {}, state, rig.dt()).force.z > 0;
-    const double spring = pushes ? 0 : m * std::pow(LawRig::speed / (0.01 * LawRig::radius), 2);
-    const double longest = pushes ? 1 : 0.02;  // s; such a term may hold the spheres for ever
-    const LawRig::Impact fine = rig.impact(LawRig::speed, rig.dt(), 0.5, longest, spring);
-    double dt = rig.table().stable_dt(rig.pair().data(), m, 0.5 * LawRig::radius, fine.overlap);
-    if (std::isinf(dt)) continue;
-    require(dt > 0, rig.name() + ": its stable step is " + short_number(dt) + " s");
-    if (!pushes) dt = 1 / std::sqrt(1 / (dt * dt) + spring / (0.04 * m));
-    for (int phase = 0; phase < 16; ++phase) {
-      const LawRig::Impact impact = rig.impact(LawRig::speed, dt, phase / 16.0, longest, spring);
-      worst = std::max(worst, impact.restitution);
-      // Measured: an undamped linear spring at a tenth of its period, 0.63 sqrt(m / k), parts with up to 1.016 of the
-      // speed, depending on where in the step it is met; at 1.9 sqrt(m / k), near the limit of 2, with 2.6.
-      require(impact.restitution <= 1.05, rig.name() + ": at its stable step, " + short_number(dt) +
-                                              " s, two spheres part with " + short_number(impact.restitution) +
-                                              " times the speed they met with");
-    }
-  }
-  return variants_text(all.size()) + ", largest speed after over before " + short_number(worst);
-}
-
 std::string reach(Subject& s) {
   const auto all = rigs(s);
   bool any = false;
@@ -484,8 +394,6 @@ std::vector<Check> law_checks() {
           {"swap", "Trading i and j turns wrench and odd history exactly.", kind, true, swap},
           {"rotation", "Turned inputs give turned outputs.", kind, true, rotation},
           {"no-time", "With dt = 0 history is only carried into the contact plane.", kind, true, no_time},
-          {"energy", "A closed path of pressing, shearing and rolling creates no energy.", kind, true, energy},
-          {"stable-step", "At its stated stable step an impact of two spheres is stable.", kind, false, stable_step},
           {"reach", "Beyond its reach there is no wrench and history is new.", kind, true, reach},
           {"in-a-list", "Alone and beside a term of no force it gives the same numbers.", kind, true, in_a_list},
           {"law-threads", "16 threads at once get the bits of one.", kind, true, threads},

@@ -224,12 +224,12 @@ LawRig::Impact LawRig::impact(double v0, double dt, double phase, double longest
   Impact result;
   std::vector<double> state = fresh(1);
   const double m = 0.5 * mass(), gap = reach();
-  double v = -v0;               // m/s, along the normal
-  double d = -phase * v0 * dt;  // m, overlap; a share of a step before touching
+  double v = -v0;                     // m/s, along the normal
+  double d = -gap - phase * v0 * dt;  // m, overlap; a share of a step before they act on each other
   bool touched = false;
   for (double t = 0; t < longest; t += dt) {
     double force = 0;
-    if (d > 0 || (touched && d > -gap)) {
+    if (d > -gap) {
       force = at(d, {0, 0, v}, {}, state, dt).force.z + spring * std::max(d, 0.0);
       touched = true;
       result.time += dt;
@@ -262,5 +262,7 @@ std::vector<LawRig> rigs(Subject& subject) {
   if (out.empty()) throw Failed{why};
   return out;
 }
+
+std::string variants_text(std::size_t count) { return std::to_string(count) + " configurations"; }
 
 }  // namespace calx::conformance

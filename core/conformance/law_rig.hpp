@@ -62,8 +62,8 @@ class LawRig {
   };
   Wrench at(double overlap, const Vec3& velocity, const Vec3& spin, std::vector<double>& state, double dt) const;
 
-  /// Head-on impact of two spheres: speed after over speed before; below 0 where they stay together for `longest` s.
-  /// spring: N/m, of a spring beside the law, for a term that does not push.
+  /// Head-on impact of two spheres, from reach to reach: speed after over speed before; below 0 where they stay
+  /// together for `longest` s. spring: N/m, of a spring beside the law, for a term that does not push.
   struct Impact {
     double restitution = -1, overlap = 0, force = 0, time = 0;
   };
@@ -80,5 +80,7 @@ class LawRig {
 
 /// A rig for each variant that the law takes. Throws Failed where it takes none.
 std::vector<LawRig> rigs(Subject& subject);
+/// "3 configurations".
+std::string variants_text(std::size_t count);
 
 }  // namespace calx::conformance

@@ -104,10 +104,14 @@ std::string derivative(Subject& s) {
         const double error = norm(d.told - d.middle);
         worst = std::max(worst, error / d.speed);
         // Curvature over h, at most as much as told smooth from jumping, enters the central difference squared.
-        require(error <= 1e-4 * d.speed + 4 * d.rounding,
-                m.name + ": at t = " + short_number(t) + " s a point moves with " + short_number(norm(d.middle)) +
-                    " m/s, but velocity and spin of the pose say " + short_number(norm(d.told)) + " m/s, " +
-                    short_number(error) + " m/s apart");
+        require(
+            error <= 1e-4 * d.speed + 4 * d.rounding,
+            m.name + ": at t = " + short_number(t) + " s a point moves with " + short_number(norm(d.middle)) +
+                " m/s, but velocity and spin of the pose say " + short_number(norm(d.told)) + " m/s, " +
+                short_number(error) + " m/s apart" +
+                (norm(d.told + d.middle) <= 1e-2 * d.speed ? ", in the opposite direction: has velocity or spin the "
+                                                             "wrong sign?"
+                                                           : ""));
       }
     }
   }
@@ -229,13 +233,17 @@ std::string period(Subject& s) {
       const double t = s.uniform(0.01, 0.99) * high;
       const calx_pose a = m.at(t), b = m.at(t + high);
       if (b.cycle >= m.at(m.span).cycle) continue;
-      require(std::fabs(b.cycle - a.cycle - 1) < 1e-6,
-              m.name + ": one cycle takes " + short_number(high) + " s, but the next one does not take the same time");
+      require(
+          std::fabs(b.cycle - a.cycle - 1) < 1e-6,
+          m.name + ": the first cycle takes " + short_number(high) +
+              " s from t = 0 on, but the next one does not take the same time; a rest before the first cycle belongs " +
+              "into the event that starts the motion, not into the motion");
       // A table may go on from where it ended; its speeds repeat.
       const Vec3 v = vec(a.velocity), w = vec(b.velocity), x = vec(a.spin), y = vec(b.spin);
       const double scale = m.table->top_speed(m.instance->get(), 1.0);
       require(norm(v - w) + norm(x - y) < 1e-5 * scale + 1e-12,
-              m.name + ": at t = " + short_number(t) + " s and one cycle later it moves at another speed");
+              m.name + ": at t = " + short_number(t) + " s and one cycle, " + short_number(high) +
+                  " s, later it moves at another speed; each cycle repeats the first, which begins at t = 0");
     }
   }
   if (!any) throw Skipped{"it has no cycles"};

@@ -284,9 +284,10 @@ std::vector<Check> text_checks() {
   return {
       {"text-dialect", "The law's text keeps to the dialect.", "", false, text_dialect},
       {"text-host", "The text, compiled by the machine's C++ compiler, gives the bits of the native code.", "", true,
-       text_host},
-      {"text-opencl", "The text gives the bits of the native code on an OpenCL device.", "", true, text_opencl},
-      {"text-cuda", "NVRTC compiles the text for an NVIDIA GPU, without spilling registers.", "", false, text_cuda}};
+       text_host, true},
+      {"text-opencl", "The text gives the bits of the native code on an OpenCL device.", "", true, text_opencl, true},
+      {"text-cuda", "NVRTC compiles the text for an NVIDIA GPU, without spilling registers.", "", false, text_cuda,
+       true}};
 }
 
 }  // namespace calx::conformance

@@ -107,8 +107,8 @@ std::vector<Matrix> whiten_bank(const Bank& bank, const Observables& observables
   return out;
 }
 
-UnknownFit fit_unknown(const Bank& bank, const std::vector<Matrix>& whitened, std::size_t blocks,
-                       const Metric& metric) {
+UnknownFit fit_unknown(const Bank& bank, const std::vector<Matrix>& whitened, std::size_t blocks, const Metric& metric,
+                       const std::vector<double>& log_distinct) {
   const Vector& r = metric.residual();
   const double log_strengths = std::log(static_cast<double>(strengths.size()));
   UnknownFit fit;
@@ -120,7 +120,7 @@ UnknownFit fit_unknown(const Bank& bank, const std::vector<Matrix>& whitened, st
     best_strength[k] = static_cast<std::size_t>(std::max_element(odds.begin(), odds.end()) - odds.begin());
     best[k] = odds[best_strength[k]] + bank.log_share[k];
     for (double o : odds) {
-      all.push_back(o + bank.log_share[k] - log_strengths);
+      all.push_back(o + bank.log_share[k] - log_strengths + (log_distinct.empty() ? 0 : log_distinct[k]));
       per_block[bank.terms[k].block].push_back(all.back());
     }
   }

@@ -29,6 +29,8 @@ Matrix whiten_term(const Term& term, const Observables& observables, const Metri
 /// Whitened columns of the bank's terms.
 std::vector<Matrix> whiten_bank(const Bank& bank, const Observables& observables, const Metric& metric);
 
-UnknownFit fit_unknown(const Bank& bank, const std::vector<Matrix>& whitened, std::size_t blocks, const Metric& metric);
+/// log_distinct: log of the share of each term, where it acts alone, that no effect of a library has; empty: all of it.
+UnknownFit fit_unknown(const Bank& bank, const std::vector<Matrix>& whitened, std::size_t blocks, const Metric& metric,
+                       const std::vector<double>& log_distinct = {});
 
 }  // namespace calx::infer

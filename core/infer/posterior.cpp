@@ -6,6 +6,36 @@
 
 namespace calx::infer {
 
+namespace {
+
+constexpr double least_share = 1e-9;  // of a term that an effect imitates exactly; keeps its logarithm finite
+
+/// Log share of each term that no effect has: what an effect imitates to within the noise is that effect, not something
+/// outside the library, and is not counted twice. With d the distance of the fitted term to its best imitation and s
+/// its size, both in sd: (1 - exp(-d^2 / 2)) / (1 - exp(-s^2 / 2)). Terms of several columns keep all.
+std::vector<double> log_distinct(const std::vector<Matrix>& terms, const std::vector<Signature>& signatures,
+                                 const Metric& metric) {
+  std::vector<Matrix> inverses;
+  for (const Signature& s : signatures) inverses.push_back(s.columns.completeOrthogonalDecomposition().pseudoInverse());
+  std::vector<double> out(terms.size(), 0);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    if (terms[k].cols() > 1) continue;
+    const Vector column = terms[k].col(0), seen = column * (column.dot(metric.residual()) / column.squaredNorm());
+    const double size = seen.squaredNorm();
+    if (!(size > 0)) continue;
+    double nearest = size;
+    for (std::size_t e = 0; e < signatures.size(); ++e) {
+      const Vector amplitude = inverses[e] * seen;
+      if (signatures[e].one_sided && amplitude[0] < 0) continue;
+      nearest = std::min(nearest, (seen - signatures[e].columns * amplitude).squaredNorm());
+    }
+    out[k] = std::log(std::max(std::expm1(-0.5 * nearest) / std::expm1(-0.5 * size), least_share));
+  }
+  return out;
+}
+
+}  // namespace
+
 Posterior weigh(const LinearModel& model, const Bank& bank, const Metric& metric, const Options& options) {
   Posterior posterior;
   const std::size_t count = model.effects.size();
@@ -26,8 +56,9 @@ Posterior weigh(const LinearModel& model, const Bank& bank, const Metric& metric
                            std::log(options.prior_pair / (0.5 * static_cast<double>(count * (count - 1)))));
       }
   if (options.unknown_rival) {
+    const std::vector<Matrix> terms = whiten_bank(bank, model.observables, metric);
     posterior.discrepancy =
-        fit_unknown(bank, whiten_bank(bank, model.observables, metric), model.observables.blocks.size(), metric);
+        fit_unknown(bank, terms, model.observables.blocks.size(), metric, log_distinct(terms, signatures, metric));
     log_odds.push_back(posterior.discrepancy.odds + std::log(options.prior_unknown));
   }
   const double total = log_sum(log_odds);

@@ -1,8 +1,7 @@
-// measure.cpp: the list of built-in sensor kinds and the one place that makes them.
+// measure.cpp: the one place that makes built-in sensors.
 #include "measure/measure.hpp"
 
 #include "base/error.hpp"
-#include "base/nearest.hpp"
 #include "measure/kinds.hpp"
 
 namespace calx {
@@ -41,22 +40,10 @@ const Kind* find_kind(const std::string& name) {
 
 }  // namespace
 
-bool is_builtin_sensor(const std::string& kind) { return find_kind(kind) != nullptr; }
-
 std::unique_ptr<Sensor> make_sensor(const SensorSettings& settings, const CaseSettings& world) {
   const Kind* kind = find_kind(settings.kind);
-  if (!kind) {
-    std::vector<std::string> known;
-    std::string list;
-    for (const Kind& each : kinds) {
-      known.push_back(each.name);
-      list += std::string(list.empty() ? "" : ", ") + each.name;
-    }
-    const std::string near = nearest_name(settings.kind, known);
-    throw Error(Fault::settings, world.file + " " + settings.pointer + "/kind: unknown kind of sensor \"" +
-                                     settings.kind + "\"; " + (near.empty() ? "" : "did you mean \"" + near + "\"? ") +
-                                     "Built in are " + list + "; others are named by their plugin's id");
-  }
+  if (!kind)
+    throw Error(Fault::settings, world.file + " " + settings.pointer + "/kind: " + unknown_sensor_kind(settings.kind));
   SensorOptions options(settings, world);
   std::unique_ptr<Sensor> sensor = kind->make(options);
   options.finish();

@@ -7,6 +7,7 @@
 #include "base/state.hpp"
 #include "calx/sensor.h"
 #include "calx/state.h"
+#include "config/sensor_kinds.hpp"
 #include "measure/world.hpp"
 
 namespace calx {
@@ -54,8 +55,8 @@ class Sensor {
   friend std::unique_ptr<Sensor> make_sensor(const SensorSettings&, const CaseSettings&);
 };
 
-/// Built-in kinds stand in kinds.hpp. Throws Error(Fault::settings) for an unknown kind (nearest name) or bad keys.
-bool is_builtin_sensor(const std::string& kind);
+/// Built-in kinds: sensor_kinds(); their makers stand in kinds.hpp. Throws Error(Fault::settings) for an unknown kind
+/// (nearest name) or bad keys.
 std::unique_ptr<Sensor> make_sensor(const SensorSettings& settings, const CaseSettings& world);
 /// A plugin's sensor; table and instance outlive it.
 std::unique_ptr<Sensor> make_plugin_sensor(const SensorSettings& settings, const calx_sensor* table,

@@ -48,16 +48,20 @@ class Player {
 
 }  // namespace
 
-std::vector<EffectInfo> list_effects(const std::vector<std::string>& search) {
+std::vector<EffectInfo> list_effects(const std::vector<std::string>& search, const std::string& text_folder) {
   std::vector<EffectInfo> out;
-  for (const PluginManifest& m : discover_plugins(search))
+  std::vector<PluginManifest> found = discover_plugins(search);
+  if (!text_folder.empty()) add_text_plugins(text_folder, found);
+  for (const PluginManifest& m : found)
     if (m.effect && m.refused.empty()) out.push_back(*m.effect);
   std::sort(out.begin(), out.end(), [](const EffectInfo& a, const EffectInfo& b) { return a.id < b.id; });
   return out;
 }
 
 std::optional<double> PluginEffects::preset(const std::string& plugin, const std::string& row) const {
-  PluginRegistry registry(search_);
+  PluginTrust trust;
+  trust.text_folder = text_folder_;
+  PluginRegistry registry(search_, {}, trust);
   for (const PluginManifest& m : registry.manifests()) {
     if (m.id != plugin || !m.refused.empty() || m.kind == kCaseEffect) continue;
     const calx_descriptor& d = registry.load(m.id, m.kind, "", "");

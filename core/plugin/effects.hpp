@@ -14,19 +14,22 @@ namespace calx {
 /// Kind of a manifest entry without a library: an effect that only changes parameters of parts and particles.
 constexpr const char* kCaseEffect = "calx.case-effect/1";
 
-/// Every usable effect in the folders, sorted by id. search: usually from plugin_search_path. Throws nothing for a
-/// refused manifest; `calx plugin list` says why it was refused.
-std::vector<EffectInfo> list_effects(const std::vector<std::string>& search);
+/// Every usable effect in the folders, sorted by id. search: usually from plugin_search_path; text_folder: of a case,
+/// where effects that are a law text may stand; empty: none. Throws nothing for a refused manifest; `calx plugin list`
+/// says why it was refused.
+std::vector<EffectInfo> list_effects(const std::vector<std::string>& search, const std::string& text_folder = "");
 
 /// The library that read_case asks.
 class PluginEffects : public EffectLibrary {
  public:
-  explicit PluginEffects(std::vector<std::string> search) : search_(std::move(search)) {}
-  std::vector<EffectInfo> effects() const override { return list_effects(search_); }
+  explicit PluginEffects(std::vector<std::string> search, std::string text_folder = "")
+      : search_(std::move(search)), text_folder_(std::move(text_folder)) {}
+  std::vector<EffectInfo> effects() const override { return list_effects(search_, text_folder_); }
   std::optional<double> preset(const std::string& plugin, const std::string& row) const override;
 
  private:
   std::vector<std::string> search_;
+  std::string text_folder_;
 };
 
 /// What "calx plugin describe" says of an effect.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 
 namespace calx {
@@ -14,6 +15,19 @@ const std::set<std::string>& forbidden() {
       "double", "long",   "short",    "char",     "int",  "unsigned", "signed", "bool", "size_t", "pow",    "sqrt",
       "sqrtf",  "fabs",   "fabsf",    "fmin",     "fmax", "exp",      "log",    "sin",  "cos",    "tan"};
   return words;
+}
+
+/// What to write in the place of a forbidden word, "; write ..."; empty where nothing does the same.
+std::string instead_of(const std::string& word) {
+  static const std::map<std::string, std::string> other = {
+      {"if", "cond ? a : b"},     {"else", "cond ? a : b"},
+      {"switch", "cond ? a : b"}, {"pow", "products, and calx_sqrt for halves of powers"},
+      {"sqrt", "calx_sqrt"},      {"sqrtf", "calx_sqrt"},
+      {"fabs", "calx_abs"},       {"fabsf", "calx_abs"},
+      {"fmin", "calx_min"},       {"fmax", "calx_max"},
+      {"float", "real"},          {"double", "real"}};
+  const auto found = other.find(word);
+  return found == other.end() ? "" : "; write " + found->second;
 }
 
 struct Token {
@@ -266,7 +280,7 @@ class Lint {
       if (at(k + 1) != "real" && at(k + 1) != "void") report(token.line, "a function gives real or void");
     }
     if (t == "typedef" && at(k + 1) == "struct") check_defined(token.line, defined_name(k + 2));
-    if (forbidden().count(t)) report(token.line, t + " is not in the dialect");
+    if (forbidden().count(t)) report(token.line, t + " is not in the dialect" + instead_of(t));
     if (t.find("__") != std::string::npos) report(token.line, t + ": two underscores belong to the compiler");
     if (t == "//") report(token.line, "comments are /* */");
     if (t == "[" || t == "]" || t == "<:" || t == ":>" || t == "<%" || t == "%>" || t == "%:" || t == "??")

@@ -23,8 +23,8 @@ using nlohmann::json;
 
 const std::vector<std::string> manifest_keys = {"calx_plugin", "library", "abi",      "version", "vendor",
                                                 "license",     "plugins", "requires", "sha256"};
-const std::vector<std::string> plugin_keys = {"id",     "kind",      "summary", "effect",  "text",
-                                              "symbol", "stiffness", "reach",   "example", "surface"};
+const std::vector<std::string> plugin_keys = {"id",        "kind",    "summary", "effect",  "text",    "symbol",
+                                              "stiffness", "modulus", "reach",   "example", "surface", "normal"};
 
 /// "linux-x86_64": the key of this machine's library where a manifest names several.
 std::string platform() {
@@ -181,8 +181,19 @@ void read_text_plugin(const json& plugin, const std::string& where, PluginManife
     throw Refused{where + "/symbol: \"" + one.symbol + "\" is not a name of lower-case letters that begins with \"" +
                   stem + "\", the stem of the text's file"};
   one.stiffness = columns(plugin, "stiffness", where);
+  one.modulus = columns(plugin, "modulus", where);
   one.reach = columns(plugin, "reach", where);
   one.text = path_beside(name, where + "/text", fs::path(one.path).parent_path());
+}
+
+/// Whether key holds the second of two words; the first is the preset.
+bool second_word(const json& plugin, const char* key, const std::string& first, const std::string& second,
+                 const std::string& where) {
+  if (!plugin.count(key)) return false;
+  const std::string word = text(plugin, key, where);
+  if (word != first && word != second)
+    throw Refused{where + "/" + key + ": \"" + word + "\" is neither \"" + second + "\" nor \"" + first + "\""};
+  return word == second;
 }
 
 /// What only `calx plugin check` reads.
@@ -195,11 +206,8 @@ void read_hints(const json& plugin, const std::string& where, PluginManifest& on
       one.examples.push_back(each.dump());
     }
   }
-  if (!plugin.count("surface")) return;
-  const std::string surface = text(plugin, "surface", where);
-  if (surface != "open" && surface != "closed")
-    throw Refused{where + "/surface: \"" + surface + "\" is neither \"open\" nor \"closed\""};
-  one.open = surface == "open";
+  one.open = second_word(plugin, "surface", "closed", "open", where);
+  one.pulls = second_word(plugin, "normal", "pushes", "pulls", where);
 }
 
 json parse(const std::string& path) {

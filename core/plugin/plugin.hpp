@@ -20,9 +20,11 @@ struct PluginManifest {
   std::string text;     // absolute path of a law text, where the plugin has no library: the host compiles it
   std::string symbol;   // of the law in that text
   std::vector<std::string> stiffness;  // columns of the text's pair row that are stiffnesses, N/m: the stable step
+  std::vector<std::string> modulus;    // columns that are effective moduli of a Hertz law, Pa: the same
   std::vector<std::string> reach;      // columns of it that are gaps up to which the law acts, m
   std::vector<std::string> examples;   // JSON objects of parameters that `calx plugin check` tries besides presets
   bool open = false;                   // a geometry whose surface has rims on purpose
+  bool pulls = false;                  // a law whose normal force pulls on purpose, the more the larger the overlap
   std::string refused;  // why it cannot be used (bad manifest, duplicate id, other architecture); empty: usable
   std::shared_ptr<const EffectInfo> effect{};  // what it says of itself as an effect (effects.hpp); null: it is none
 };

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -10,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
+#include "base/units.hpp"
 #include "compute/device_cache.hpp"
 #include "compute/device_text.hpp"
 #include "compute/host_compiler.hpp"
@@ -62,9 +64,11 @@ constexpr const char* kLaw = R"(
 CALX_LAW_TABLES(@SYMBOL@)
 struct calx_instance { char unused; };
 static calx_instance the_instance;
-__attribute__((unused)) static double CALX_CALL stable_dt(const double* pair, double m_eff, double, double) {
-  double k = 0.0;
-@STIFFNESS@  (void)pair;
+__attribute__((unused)) static double CALX_CALL stable_dt(const double* pair, double m_eff, double r_eff, double overlap) {
+  double k = 0.0, modulus = 0.0;
+@STIFFNESS@@MODULUS@  (void)pair;
+  /* Hertz: slope of 4/3 E sqrt(r) overlap^1.5. */
+  k += 2.0 * modulus * sqrt(r_eff * (overlap > 0.0 ? overlap : 0.0));
   /* A tenth of the period of mass and stiffest spring, 2 pi sqrt(m / k). */
   return k > 0.0 ? 0.62831853071795865 * sqrt(m_eff / k) : HUGE_VAL;
 }
@@ -87,6 +91,7 @@ static calx_contact_law make_law() {
   return law;
 }
 static const calx_contact_law the_table = make_law();
+extern "C" { CALX_EXPORT extern const calx_contact_law* const calx_text_table; const calx_contact_law* const calx_text_table = &the_table; }
 #define PARAMETERS 0, 0
 static calx_status make(const calx_config*, calx_instance** out) { *out = &the_instance; return CALX_OK; }
 static void CALX_CALL destroy(calx_instance*) {}
@@ -141,6 +146,21 @@ std::string largest_lines(const std::string& symbol, const std::vector<std::stri
   return out;
 }
 
+/// Throws Refused where a column that the manifest names under key has not the unit that the generated code takes it to
+/// have.
+void check_unit(const PluginManifest& manifest, const calx_contact_law& law, const char* key,
+                const std::vector<std::string>& columns, const std::string& unit) {
+  for (std::uint32_t k = 0; k < law.pair_count; ++k) {
+    const calx_field& field = law.pair[k];
+    if (std::find(columns.begin(), columns.end(), field.name) == columns.end()) continue;
+    const Unit given = parse_unit(field.unit);
+    if (same_dimension(given, parse_unit(unit))) continue;
+    const bool hertz = unit == "N/m" && same_dimension(given, parse_unit("Pa"));
+    throw Refused{manifest.path + " \"" + key + "\": column \"" + field.name + "\" is in " + field.unit +
+                  ", it must be in " + unit + (hertz ? "; the modulus of a Hertz law belongs under \"modulus\"" : "")};
+  }
+}
+
 /// The text in one precision, as plugins include it.
 std::string one_precision(const char* bits, const std::string& law, const std::string& name, const char* wrapper) {
   return std::string("#undef CALX_BITS\n#define CALX_BITS ") + bits + "\n" + header("prelude.h") + header("sliding.h") +
@@ -160,9 +180,10 @@ std::string generate(const PluginManifest& manifest, const std::string& law, con
   std::string entry = std::string(is_law ? kLaw : kForce) + kEntry;
   entry = replaced(entry, "@SYMBOL@", manifest.symbol);
   entry = replaced(entry, "@STIFFNESS@", largest_lines(manifest.symbol, manifest.stiffness, "k"));
+  entry = replaced(entry, "@MODULUS@", largest_lines(manifest.symbol, manifest.modulus, "modulus"));
   entry = replaced(entry, "@GAPS@", largest_lines(manifest.symbol, manifest.reach, "gap"));
   entry = replaced(entry, "@REACH@", manifest.reach.empty() ? "0" : "reach");
-  entry = replaced(entry, "@STABLE@", manifest.stiffness.empty() ? "0" : "stable_dt");
+  entry = replaced(entry, "@STABLE@", manifest.stiffness.empty() && manifest.modulus.empty() ? "0" : "stable_dt");
   for (const auto& each : std::map<std::string, std::string>{{"SHA256", sha256(law.data(), law.size())},
                                                              {"ID", manifest.id},
                                                              {"KIND", manifest.kind},
@@ -216,8 +237,15 @@ const calx_entry& compile_text_plugin(const PluginManifest& manifest, const std:
       if (module->image.empty()) throw Refused{manifest.text + " does not compile:" + first_errors(module->log)};
       cache.store(key, *module);
     }
-    const void* entry = dlsym(open_image(module->image), "calx_plugin_entry");
+    void* const library = open_image(module->image);
+    const void* entry = dlsym(library, "calx_plugin_entry");
     if (!entry) throw Refused{manifest.text + ": its compiled form exports no calx_plugin_entry"};
+    if (const void* table = dlsym(library, "calx_text_table")) {
+      const auto& law = **static_cast<const calx_contact_law* const*>(table);
+      check_unit(manifest, law, "stiffness", manifest.stiffness, "N/m");
+      check_unit(manifest, law, "modulus", manifest.modulus, "Pa");
+      check_unit(manifest, law, "reach", manifest.reach, "m");
+    }
     compiled[whole] = static_cast<const calx_entry*>(entry);
     return *compiled[whole];
   } catch (const Error& e) {

@@ -97,6 +97,8 @@ Banner unknown_banner(const DiagnosisResult& d) {
       "The measurements depart from the simulation in a way that neither chance nor recalibration nor any cause of the "
       "library makes.";
   if (!d.terms.empty()) b.meaning += " It looks like this: <b>" + html_text(d.terms[0].words) + "</b>.";
+  if (d.generic.accepted)
+    b.meaning += " " + names_html({d.generic.id}) + " describes it (section 3), which does not tell why it happens.";
   b.next =
       "Ask at the plant what could leave such a trace, and whether an instrument could. Whoever has an idea can add it "
       "as an effect plugin and diagnose again; finished runs are kept. Until then do not trust predictions of what "
@@ -130,6 +132,11 @@ void DiagnosisSections::header() {
                     "</h1></div><div class=\"verdict " + b.mood + "\"><span class=\"status\">" + b.word +
                     "</span><h2>" + b.headline + "</h2><p>" + b.meaning + "</p>";
   if (!b.next.empty()) out += "<p><b>What to do.</b> " + b.next + "</p>";
+  if (!d.hints.empty()) {
+    out += "<p><b>Hints from these data.</b></p><ul>";
+    for (const std::string& hint : d.hints) out += "<li>" + html_text(hint) + "</li>";
+    out += "</ul>";
+  }
   out += "</div><div class=\"cards\">";
   std::size_t wrong = 0;
   for (const DiagnosisResult::Observable& o : d.observables) wrong += o.p < 0.05 ? 1 : 0;

@@ -24,8 +24,30 @@ std::string parameter_flags(const DiagnosisResult::Parameter& p, bool has_cause)
 
 }  // namespace
 
+std::string DiagnosisSections::generic_term() const {
+  const DiagnosisResult::GenericTerm& g = d.generic;
+  if (g.id.empty()) return "";
+  std::string out =
+      "<h3>A generic term, which is no named cause</h3><p>The study asked for forces that are known by a formula "
+      "alone, in case nothing of the library explains the data. "
+      "The likeliest is " +
+      names_html({g.id}) + ": " + html_text(g.summary) + "</p><ul class=\"checks\">" +
+      html_check(g.accepted ? "good" : "open", g.accepted ? "It is worth using." : "It is refused.",
+                 "Why: " + html_text(g.reason) + "." +
+                     (g.accepted ? " Found: " + strength_html(g.amount) + "; held-out data are " +
+                                       likelier_html(g.gain) + " with it, their typical error goes from " +
+                                       number_html(g.error_before, 2) + " to " + number_html(g.error_after, 2) +
+                                       " sd, in runs with new seeds. It describes what happens under the "
+                                       "conditions of these data; why it happens is still to be found."
+                                 : "")) +
+      "</ul>";
+  std::vector<std::vector<std::string>> rows = {{"Generic term", "Log odds against the recalibrated case"}};
+  for (const auto& t : g.tried) rows.push_back({"<code>" + html_text(t.first) + "</code>", number_html(t.second)});
+  return out + html_table(rows, 1);
+}
+
 void DiagnosisSections::model() {
-  std::string out;
+  std::string out = generic_term();
   if (d.extensions.empty())
     out += html_absent(d.verdict == "named" ? "No extended case is listed."
                                             : "No cause is named, so the case stays as it is: an extension that the "
@@ -41,9 +63,10 @@ void DiagnosisSections::model() {
              html_text(e.text) + "</pre></div></details>";
   }
   if (!d.extensions.empty())
-    out +=
-        "<p class=\"note\">An extended case holds the cause with the strength found and the parameters set anew. It is "
-        "valid for the conditions of these data.</p>";
+    out += "<p class=\"note\">An extended case holds the " +
+           std::string(d.generic.accepted ? "generic term" : "cause") +
+           " with the strength found and the parameters set anew. It is "
+           "valid for the conditions of these data.</p>";
   out += "<h3>Parameters that were set anew</h3>";
   if (d.parameters.empty()) out += html_absent("The study leaves no parameter open.");
   std::vector<std::vector<std::string>> rows = {{"Parameter", "Expected", "Recalibrated"}};

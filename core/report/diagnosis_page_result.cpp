@@ -123,6 +123,20 @@ Result::UnknownTerm read_term(const Json& j) {
   return {text(j, "observable"), text(j, "family"), text(j, "words"), number(j, "gain_nats"), number(j, "stability")};
 }
 
+Result::GenericTerm read_generic(const Json& j) {
+  Result::GenericTerm g;
+  if (!j.is_object()) return g;
+  g.id = text(j, "id"), g.summary = text(j, "summary"), g.reason = text(j, "reason");
+  g.accepted = flag(j, "accepted");
+  const std::vector<Result::Amount> amounts = each(j, "parameters", read_amount);
+  if (!amounts.empty()) g.amount = amounts[0];
+  const Json& runs = member(j, "confirmation");
+  g.gain = number(runs, "held_out_log_score", number(j, "held_out_log_score"));
+  g.error_before = number(runs, "error_before"), g.error_after = number(runs, "error_after");
+  g.tried = each(j, "tried", [](const Json& t) { return std::make_pair(text(t, "id"), number(t, "log_odds")); });
+  return g;
+}
+
 Result::Parameter read_parameter(const Json& j) {
   Result::Parameter p;
   p.name = text(j, "name"), p.unit = text(j, "unit");
@@ -227,6 +241,7 @@ DiagnosisResult read_diagnosis(const std::string& dir) {
   });
   read_confusability(d, member(j, "confusability"));
   d.terms = each(j, "unknown_terms", read_term);
+  d.generic = read_generic(member(j, "generic_term"));
   read_extensions(d, j);
   read_worth(d, j);
   d.next = each(j, "next", [](const Json& n) {
@@ -241,6 +256,7 @@ DiagnosisResult read_diagnosis(const std::string& dir) {
   const Json& runs = member(j, "runs");
   d.budget = number(runs, "budget"), d.planned = number(runs, "planned"), d.used = number(runs, "used");
   d.assumptions = texts(member(j, "assumptions")), d.notes = texts(member(j, "notes"));
+  d.hints = texts(member(j, "hints"));
   read_cost(d);
   return d;
 }

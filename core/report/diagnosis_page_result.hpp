@@ -41,6 +41,15 @@ struct DiagnosisResult {
     std::string observable;
     double x = unknown, z = unknown;
   };
+  /// A force known by a formula alone, tried where the cause is not in the library.
+  struct GenericTerm {
+    std::string id, summary, reason;
+    bool accepted = false;
+    Amount amount;
+    double gain = unknown;
+    double error_before = unknown, error_after = unknown;  // held out, sd, by runs
+    std::vector<std::pair<std::string, double>> tried;     // id and log odds, best first
+  };
   struct UnknownTerm {
     std::string observable, family, words;
     double gain = unknown, stability = unknown;
@@ -77,6 +86,7 @@ struct DiagnosisResult {
   std::vector<std::vector<double>> distance;  // (k, l): signal of k that the best imitation by l leaves, in sd
   std::vector<std::vector<std::string>> groups;
   std::vector<UnknownTerm> terms;
+  GenericTerm generic;  // without id: none was tried
   std::vector<Extension> extensions;
   double gain = unknown, gain_sd = unknown, gain_needed = unknown;
   bool held_out = true, split_repeats = false;
@@ -93,7 +103,7 @@ struct DiagnosisResult {
   std::vector<Claim> claims;
   std::vector<std::pair<std::string, std::string>> untested;  // effect, reason
   double budget = unknown, planned = unknown, used = unknown;
-  std::vector<std::string> assumptions, notes;
+  std::vector<std::string> assumptions, notes, hints;
 
   /// From cost.json; has_cost false: not there.
   bool has_cost = false;

@@ -34,6 +34,7 @@ struct DiagnosisSections {
   std::string distance_map() const;
   std::string rivals() const;
   std::string terms() const;
+  std::string generic_term() const;
   std::string claims() const;
   std::string held_out_table() const;
   std::string held_out_charts();

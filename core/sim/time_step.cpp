@@ -156,9 +156,13 @@ double choose_step(const StepInputs& in, const std::vector<StepLimit>& limits) {
   if (c.time.step <= 0) {
     for (const auto& limit : limits)
       if (limit.binds) return limit.seconds;
-    throw Error(Fault::settings, c.file +
-                                     " /time: no limit is known for the time step (no source, or a law without a "
-                                     "stable step and materials without young and poisson); give \"step\" in s");
+    std::string why;
+    for (const Touching& t : touching_materials(in))
+      why += (why.empty() ? "" : ", ") + t.list->label + ", whose law states no stable step";
+    throw Error(Fault::settings, c.file + " /time: no limit is known for the time step: " +
+                                     (why.empty() ? "no source says which particles come"
+                                                  : why + " and whose materials have no young and poisson") +
+                                     "; give \"step\" in s");
   }
   for (const auto& limit : limits) {
     if (c.time.step > limit.refused_above)

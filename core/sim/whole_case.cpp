@@ -1,12 +1,18 @@
 #include "sim/whole_case.hpp"
 
+#include <filesystem>
+
 #include "base/error.hpp"
 #include "plugin/effects.hpp"
 
 namespace calx {
 
 CaseFile read_whole_case(const RunOptions& options) {
-  const PluginEffects effects(plugin_folders_of(options.simulation));
+  std::error_code none;
+  std::string folder;
+  if (!options.simulation.safe_mode && std::filesystem::is_regular_file(options.case_path, none))
+    folder = std::filesystem::canonical(options.case_path, none).parent_path().string();
+  const PluginEffects effects(plugin_folders_of(options.simulation), folder);
   return whole_case(read_case(options.case_path, options.overrides, &effects));
 }
 

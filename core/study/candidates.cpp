@@ -9,6 +9,7 @@
 #include "config/node.hpp"
 #include "plugin/effects.hpp"
 #include "study/case_check.hpp"
+#include "study/generic_terms.hpp"
 #include "study/resolve.hpp"
 
 namespace calx {
@@ -202,6 +203,40 @@ std::string place(const Study& study, Candidate& c, const Named* named, double s
   return reason.empty() ? "touches none of the kinds of observables that were measured" : reason;
 }
 
+Json read_roles(const Study& study) {
+  Json roles = parse_json(study.roles, study.file, "/roles");
+  if (!roles.is_object())
+    throw Error(Fault::settings, study.file + " /roles: " + shown(roles) + "; must hold names in the cases by role");
+  return roles;
+}
+
+/// Every amplitude of the effect that fits a case; what fits none is untested, and an error where the study names it.
+void add_candidates(const Study& study, const EffectInfo& info, const Json& roles, const Named* own, double step_scales,
+                    Library& out) {
+  for (const EffectParameter& p : info.parameters) {
+    if (!p.is_amplitude) continue;
+    Candidate c = make_candidate(info, p, roles, own, step_scales);
+    c.named = own != nullptr;
+    for (const StudyObservable& o : study.observables)
+      c.touched += static_cast<std::size_t>(std::count(info.touches.begin(), info.touches.end(), o.kind));
+    // Where the case refuses an effect at its usual trial strength, for its time step for instance, less may do.
+    std::string reason;
+    for (const double weaker : {1.0, 0.5, 0.5}) {
+      c.effect.scale *= weaker;
+      reason = place(study, c, own, step_scales);
+      if (reason.empty()) break;
+    }
+    if (reason.empty()) {
+      out.candidates.push_back(c);
+    } else if (own) {
+      throw Error(Fault::settings, study.file + " " + own->pointer + ": effect " + info.id +
+                                       " cannot act in any case of the study; " + reason);
+    } else if (out.untested.empty() || out.untested.back().effect != info.id) {
+      out.untested.push_back({info.id, reason});
+    }
+  }
+}
+
 }  // namespace
 
 double Candidate::value(const infer::Vector& amplitude) const {
@@ -228,37 +263,24 @@ double Candidate::angle(const infer::Vector& amplitude) const {
 Library find_library(const Study& study, double step_scales) {
   const std::vector<EffectInfo> effects = list_effects(plugin_search_path(study.executor.plugin_path));
   const std::map<std::string, Named> named = read_named(study, effects);
-  const Json roles = parse_json(study.roles, study.file, "/roles");
-  if (!roles.is_object())
-    throw Error(Fault::settings, study.file + " /roles: " + shown(roles) + "; must hold names in the cases by role");
+  const Json roles = read_roles(study);
   Library out;
   for (const EffectInfo& info : effects) {
     const auto found = named.find(info.id);
     const Named* own = found == named.end() ? nullptr : &found->second;
     if (!own && (study.named_effects_only || info.id.compare(0, 5, "calx.") != 0)) continue;
-    for (const EffectParameter& p : info.parameters) {
-      if (!p.is_amplitude) continue;
-      Candidate c = make_candidate(info, p, roles, own, step_scales);
-      c.named = own != nullptr;
-      for (const StudyObservable& o : study.observables)
-        c.touched += static_cast<std::size_t>(std::count(info.touches.begin(), info.touches.end(), o.kind));
-      // Where the case refuses an effect at its usual trial strength, for its time step for instance, less may do.
-      std::string reason;
-      for (const double weaker : {1.0, 0.5, 0.5}) {
-        c.effect.scale *= weaker;
-        reason = place(study, c, own, step_scales);
-        if (reason.empty()) break;
-      }
-      if (reason.empty()) {
-        out.candidates.push_back(c);
-      } else if (own) {
-        throw Error(Fault::settings, study.file + " " + own->pointer + ": effect " + info.id +
-                                         " cannot act in any case of the study; " + reason);
-      } else if (out.untested.empty() || out.untested.back().effect != info.id) {
-        out.untested.push_back({info.id, reason});
-      }
-    }
+    add_candidates(study, info, roles, own, step_scales, out);
   }
+  return out;
+}
+
+Library find_generic_terms(const Study& study, double step_scales) {
+  const std::vector<EffectInfo> effects = list_effects(plugin_search_path(study.executor.plugin_path));
+  const Json roles = read_roles(study);
+  Library out;
+  for (const GenericTerm& term : read_generic_terms(study))
+    for (const EffectInfo& info : effects)
+      if (info.id == term.id()) add_candidates(study, info, roles, nullptr, step_scales, out);
   return out;
 }
 

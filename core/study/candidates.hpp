@@ -53,6 +53,9 @@ struct Library {
 /// step_scales: trial strength in scales of the effect.
 Library find_library(const Study& study, double step_scales);
 
+/// The generic terms of the study (generic_terms.hpp), whose plugins must be on its plugin path, likewise.
+Library find_generic_terms(const Study& study, double step_scales);
+
 /// A strength of a candidate.
 struct Dose {
   const Candidate* candidate;

@@ -15,6 +15,7 @@ struct Columns {
   std::string sensor;
   std::vector<std::string> columns;
   std::vector<std::pair<std::string, std::string>> curves;
+  std::vector<std::string> fields;
 };
 
 [[noreturn]] void fail(const Study& study, const std::string& pointer, const std::string& what) {
@@ -29,7 +30,8 @@ std::vector<Columns> sensors_of(const RunRequest& request, const std::vector<std
   Simulation sim(resolve(request, plugin_path), options);
   std::vector<Columns> out;
   for (const auto& s : sim.sensors()) {
-    out.push_back({s->name(), s->columns(), {}});
+    out.push_back({s->name(), s->columns(), {}, {}});
+    for (const FieldResult& f : s->fields()) out.back().fields.push_back(f.name);
     for (const CurveResult& c : s->curves()) out.back().curves.emplace_back(c.x_name, c.y_name);
   }
   return out;
@@ -53,6 +55,14 @@ void check_columns(const Study& study, const StudyObservable& o, const std::stri
   if (at == sensors.end())
     fail(study, pointer + "/sensor",
          "case \"" + o.case_name + "\" has no sensor \"" + o.sensor + "\"; " + did_you_mean(o.sensor, names));
+  if (o.is_map) {
+    if (std::count(at->fields.begin(), at->fields.end(), o.column) == 0)
+      fail(study, pointer + "/field",
+           "sensor \"" + o.sensor + "\" has no field \"" + o.column + "\"; " +
+               (at->fields.empty() ? "only a sensor of the kind \"height-map\" has one"
+                                   : did_you_mean(o.column, at->fields)));
+    return;
+  }
   if (std::count(at->curves.begin(), at->curves.end(), std::make_pair(o.against, o.column)) > 0) return;
   std::vector<std::string> columns = at->columns;
   const auto check = [&](const std::string& key, const std::string& column) {

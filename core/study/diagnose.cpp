@@ -12,6 +12,8 @@
 #include "study/claims.hpp"
 #include "study/confirm.hpp"
 #include "study/diagnosis_plan.hpp"
+#include "study/generic_fit.hpp"
+#include "study/hints.hpp"
 #include "study/next_measurements.hpp"
 
 namespace calx {
@@ -57,12 +59,12 @@ class Diagnoser {
                          " runs would try all of them");
     if (d_.diagnosis.verdict == infer::Verdict::named) check_name();
     if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
-    if (d_.diagnosis.verdict == infer::Verdict::unknown)
-      d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
+    if (d_.diagnosis.verdict == infer::Verdict::unknown) describe_unknown();
     compare();
     judge_claims(study_, d_);
     if (d_.diagnosis.verdict != infer::Verdict::named && !possible.empty())
       d_.next = weigh_measurements(study_, possible, d_, executor_, sink_);
+    d_.hints = hints_of(study_, d_);
     return std::move(d_);
   }
 
@@ -155,7 +157,15 @@ class Diagnoser {
     return leader;
   }
 
-  bool pays_for(std::size_t runs) const { return d_.ledger.runs.size() + runs <= d_.ledger.planned; }
+  /// Rounds beyond the plan leave fewer steps of the fit by runs to do, and fewer runs to do them.
+  void keep_to_plan() {
+    while (plan_.steps > 0 && !pays_for(plan_.confirmation_runs(plan_.steps))) --plan_.steps;
+  }
+
+  /// Beside the generic terms, which a verdict of "not in the library" runs instead.
+  bool pays_for(std::size_t runs) const {
+    return d_.ledger.runs.size() + runs + plan_.generic_runs <= d_.ledger.planned;
+  }
 
   /// What another program gave is the base at the prior; the cases only say how it changes from there.
   void keep_foreign_base() {
@@ -281,13 +291,11 @@ class Diagnoser {
   /// The old and the extended case, fitted by runs and then run with new seeds against the held-out data.
   void confirm() {
     const RealModel old{d_.u_before, {}, {}}, named{d_.u_after, d_.explained, d_.amplitudes};
-    // Rounds beyond the plan leave fewer steps to do, and fewer runs to do them.
-    int steps = plan_.steps;
-    while (steps > 0 && !pays_for(plan_.confirmation_runs(steps))) --steps;
+    keep_to_plan();
     const auto fitted = [&](const char* stage, const RealModel& start) {
       d_.ledger.stage = stage;
       // A poor plan takes what the linear model says.
-      return steps > 0 ? fit_by_runs(d_, *simulator_, start, steps, plan_.step_seeds) : RealFit{start, {}};
+      return plan_.steps > 0 ? fit_by_runs(d_, *simulator_, start, plan_.steps, plan_.step_seeds) : RealFit{start, {}};
     };
     try {
       const RealModel old_fit = fitted("old case fitted by runs", old).model;
@@ -305,6 +313,13 @@ class Diagnoser {
       withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
     else
       check_name();
+  }
+
+  /// What is not in the library, as a shape of the observables and, where the study asks for it, as a generic term.
+  void describe_unknown() {
+    d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
+    keep_to_plan();
+    d_.generic = fit_generic_term(study_, d_, *simulator_, plan_);
   }
 
   void withdraw(const std::string& why) {

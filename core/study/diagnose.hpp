@@ -40,6 +40,23 @@ struct Claim {
   std::string sentence;
 };
 
+/// A generic term, tried where something outside of the library is wrong. It describes and does not name.
+struct GenericFit {
+  struct Trial {
+    std::size_t candidate;  // of the library, behind its effects
+    double log_odds;        // of the fitted campaign against the recalibrated model, amplitude integrated out
+  };
+  std::vector<Trial> tried;  // best first
+  bool accepted = false;     // the first of them
+  std::string reason;        // why it is accepted or refused
+  double fit_p = 1;          // of what is left with it
+  double gain = 0;           // ln of the held-out likelihood ratio as foretold, before any run confirms it
+  infer::Vector u;           // nuisance parameters with it
+  infer::Vector amplitude;
+  double amplitude_sd = 0;
+  Confirmation confirmation;
+};
+
 struct StudyDiagnosis {
   MeasuredBlocks measured;
   Library library;
@@ -57,11 +74,13 @@ struct StudyDiagnosis {
   infer::Confusability confusion;
   infer::SelfTest self_test;
   std::vector<infer::UnknownTerm> terms;
+  GenericFit generic;
   Confirmation confirmation;
   std::vector<NextMeasurement> next;
   std::vector<Claim> claims;
   RunLedger ledger;
   std::vector<std::string> notes;
+  std::vector<std::string> hints;  // what the reader can do next
 };
 
 /// The result depends on the study, its seed and the figures of the runs alone, not on jobs, on what was cached or on
@@ -69,6 +88,11 @@ struct StudyDiagnosis {
 /// a budget too small for any plan, Error(Fault::numerics) when the cases without effects give no numbers, and what the
 /// executor throws. [main]
 StudyDiagnosis diagnose_study(const Study& study, Executor& executor, const ProgressSink& sink);
+
+/// Writes the generic terms of the study as text-only plugins to folder/generic and puts that on its plugin path. To be
+/// called before the executor is made; does nothing for a study without generic terms. Throws Error(Fault::settings)
+/// for terms that cannot be, Error(Fault::files).
+void prepare_generic_terms(Study& study, const std::string& folder);
 
 /// What a person wants to know first, as text of some lines.
 std::string diagnosis_summary(const Study& study, const StudyDiagnosis& result);

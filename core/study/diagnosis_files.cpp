@@ -10,29 +10,41 @@
 #include "study/csv_cell.hpp"
 #include "study/diagnose.hpp"
 #include "study/diagnosis_text.hpp"
+#include "study/generic_terms.hpp"
 
 namespace calx {
 namespace {
 
 namespace fs = std::filesystem;
-using infer::Verdict;
 
-/// The case as it stands, with the nuisance parameters found and the effects named. Sections that change stand whole,
-/// for lists of a case cannot be merged entry by entry.
-std::string extension_text(const Study& study, const StudyDiagnosis& d, std::size_t case_number,
-                           const std::string& folder, const std::string& sentence) {
-  const StudyCase& which = study.cases[case_number];
+/// What is put into the cases: the effects named, or a generic term that was accepted.
+struct Extension {
   std::vector<Dose> doses;
-  std::string names;
-  for (std::size_t k = 0; k < d.diagnosis.named.size(); ++k) {
-    const Candidate& c = d.library.candidates[d.kept[d.diagnosis.named[k]]];
-    doses.push_back({&c, d.amplitudes[k]});
-    names += (k > 0 ? " and " : "") + c.info.id;
-  }
-  std::vector<double> values;
+  std::vector<double> values;  // of the parameters
+  std::string sentence;
+};
+
+Extension extension_of(const Study& study, const StudyDiagnosis& d) {
+  Extension out;
+  for (std::size_t k = 0; k < d.diagnosis.named.size(); ++k)
+    out.doses.push_back({&d.library.candidates[d.kept[d.diagnosis.named[k]]], d.amplitudes[k]});
+  out.sentence = diagnosis_sentence(study, d);
+  const bool generic = d.generic.accepted;
+  if (generic) out.doses = {{&d.library.candidates[d.generic.tried[0].candidate], d.generic.amplitude}};
+  const infer::Vector& u = generic ? d.generic.u : d.u_after;
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
-    values.push_back(parameter_value(study.parameters[k], d.u_after[static_cast<Eigen::Index>(k)]));
-  const RunRequest request = dosed_request(study, case_number, values, study.seed, doses, false);
+    out.values.push_back(parameter_value(study.parameters[k], u[static_cast<Eigen::Index>(k)]));
+  return out;
+}
+
+/// The case as it stands, with the nuisance parameters found and the extension. Sections that change stand whole, for
+/// lists of a case cannot be merged entry by entry.
+std::string extension_text(const Study& study, const Extension& extension, std::size_t case_number,
+                           const std::string& folder) {
+  const StudyCase& which = study.cases[case_number];
+  std::string names;
+  for (const Dose& dose : extension.doses) names += (names.empty() ? "" : " and ") + dose.candidate->info.id;
+  const RunRequest request = dosed_request(study, case_number, extension.values, study.seed, extension.doses, false);
   const Document document(read_text_file(which.path), which.path, request.overrides);
   Json out;
   out["calx"] = 1;
@@ -44,7 +56,7 @@ std::string extension_text(const Study& study, const StudyDiagnosis& d, std::siz
     out[section] = document.root()[section];
   }
   Json assumptions = document.root().value("assumptions", Json::array());
-  assumptions.push_back(sentence + " Fitted by calx diagnose to the data of study \"" + study.title +
+  assumptions.push_back(extension.sentence + " Fitted by calx diagnose to the data of study \"" + study.title +
                         "\"; valid for the conditions of these data.");
   out["assumptions"] = assumptions;
   return out.dump(2) + "\n";
@@ -76,17 +88,20 @@ void write_diagnosis(const std::string& folder, const Study& study, const StudyD
   std::vector<std::pair<std::string, std::string>> extensions;
   std::error_code ignored;
   fs::remove_all(folder + "/extension", ignored);
-  for (std::size_t k = 0; k < study.cases.size() && d.diagnosis.verdict == Verdict::named; ++k) {
-    const bool acts = std::any_of(d.diagnosis.named.begin(), d.diagnosis.named.end(), [&](std::size_t e) {
-      return static_cast<bool>(d.library.candidates[d.kept[e]].cases[k]);
-    });
+  const Extension extension = extension_of(study, d);
+  for (std::size_t k = 0; k < study.cases.size(); ++k) {
+    const bool acts = std::any_of(extension.doses.begin(), extension.doses.end(),
+                                  [&](const Dose& dose) { return static_cast<bool>(dose.candidate->cases[k]); });
     if (!acts) continue;
     fs::create_directories(folder + "/extension");
     const std::string name = "extension/" + study.cases[k].name + ".json";
-    write_text_atomically(folder + "/" + name,
-                          extension_text(study, d, k, folder + "/extension", diagnosis_sentence(study, d)));
+    write_text_atomically(folder + "/" + name, extension_text(study, extension, k, folder + "/extension"));
     extensions.emplace_back(study.cases[k].name, name);
   }
+  // The law text stands beside the cases that use it, so that they run wherever the folder goes.
+  if (d.generic.accepted)
+    for (const GenericTerm& term : read_generic_terms(study))
+      if (term.id() == extension.doses[0].candidate->info.id) write_generic_plugins(folder + "/extension", {term});
   write_text_atomically(folder + "/runs.csv", runs_csv(study, d));
   write_text_atomically(folder + "/cost.json", cost_json(study, d));
   // Last, for it says that the diagnosis is done.

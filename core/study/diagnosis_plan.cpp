@@ -4,6 +4,8 @@
 #include <array>
 
 #include "base/error.hpp"
+#include "study/generic_fit.hpp"
+#include "study/generic_terms.hpp"
 
 namespace calx {
 namespace {
@@ -47,7 +49,8 @@ std::size_t runs_of(const Study& study, const Library& library, DiagnosisPlan& p
   plan.round_runs =
       static_cast<std::size_t>(leaders * plan.leading) * most + static_cast<std::size_t>(1 + plan.rebased) * cases;
   runs += static_cast<std::size_t>(plan.refined) * most + static_cast<std::size_t>(plan.rounds) * plan.round_runs;
-  runs += plan.confirmation_runs(plan.steps);
+  plan.generic_runs = read_generic_terms(study).size() * generic_seeds * cases;
+  runs += plan.generic_runs + plan.confirmation_runs(plan.steps);
   return runs + full_runs * used_cases(study, study.observables, true);
 }
 

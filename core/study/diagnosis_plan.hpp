@@ -13,8 +13,8 @@ struct DiagnosisPlan {
   std::vector<int> base;
   int refined, rounds, rebased, leading, steps, step_seeds;
   std::size_t confirmed;
-  int trials = 1;                         // seeds behind each signature: what the budget leaves
-  std::size_t cases = 1, round_runs = 0;  // cases of a run; runs of one round
+  int trials = 1;                                           // seeds behind each signature: what the budget leaves
+  std::size_t cases = 1, round_runs = 0, generic_runs = 0;  // cases of a run; runs of one round, of the generic terms
 
   /// Of both sides, with so many steps of the fit by runs.
   std::size_t confirmation_runs(int fit_steps) const {

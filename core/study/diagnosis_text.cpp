@@ -62,11 +62,12 @@ class DiagnosisText {
     j["events"] = events();
     j["confusability"] = confusability();
     j["unknown_terms"] = terms();
+    j["generic_term"] = generic_term();
     j["extension"] = extensions.empty() ? Json() : Json(extensions[0].second);
     j["extensions"] = Json::object();
     for (const auto& e : extensions) j["extensions"][e.first] = e.second;
     j["gain"] = gain();
-    j["confirmation"] = confirmation();
+    j["confirmation"] = confirmation(d_.confirmation);
     j["self_test"] = self_test();
     j["next"] = Json::array();
     for (const NextMeasurement& n : d_.next)
@@ -82,6 +83,7 @@ class DiagnosisText {
     j["common_random_numbers"] = d_.model.common_numbers;
     j["assumptions"] = study_.assumptions;
     j["notes"] = d_.notes;
+    j["hints"] = d_.hints;
     return j;
   }
 
@@ -101,7 +103,7 @@ class DiagnosisText {
         std::string out = "Something is wrong that is not in the library";
         for (std::size_t k = 0; k < d_.terms.size(); ++k)
           out += (k == 0 ? ". It looks like this: " : "; ") + d_.terms[k].words;
-        return out + ".";
+        return out + "." + generic_words();
       }
       default: {
         std::string out = "No cause can be named: " + v_.reason + ".";
@@ -289,6 +291,49 @@ class DiagnosisText {
     return out;
   }
 
+  Json strength_of(const Candidate& c, const Vector& amplitude, double sd) const {
+    constexpr double normal_95 = 1.645;
+    const double size = amplitude[0];
+    return {{"name", c.parameter},
+            {"unit", c.unit},
+            {"value", c.value(amplitude)},
+            {"low", std::clamp(size - normal_95 * sd, c.lowest, c.highest)},
+            {"high", std::clamp(size + normal_95 * sd, c.lowest, c.highest)},
+            {"off", c.off},
+            {"range", {c.lowest, c.highest}}};
+  }
+
+  /// What fits best where nothing of the library does; no name of a cause.
+  Json generic_term() const {
+    const GenericFit& g = d_.generic;
+    if (g.tried.empty()) return nullptr;
+    const Candidate& best = d_.library.candidates[g.tried[0].candidate];
+    Json tried = Json::array();
+    for (const GenericFit::Trial& t : g.tried)
+      tried.push_back({{"id", d_.library.candidates[t.candidate].info.id},
+                       {"summary", d_.library.candidates[t.candidate].info.summary},
+                       {"log_odds", t.log_odds}});
+    return {{"id", best.info.id},
+            {"summary", best.info.summary},
+            {"kind", "generic term, no named cause"},
+            {"accepted", g.accepted},
+            {"reason", g.reason},
+            {"parameters", {strength_of(best, g.amplitude, g.amplitude_sd)}},
+            {"fit_p", g.fit_p},
+            {"held_out_log_score", g.gain},
+            {"confirmation", confirmation(g.confirmation)},
+            {"tried", tried}};
+  }
+
+  std::string generic_words() const {
+    const GenericFit& g = d_.generic;
+    if (g.tried.empty()) return "";
+    const Candidate& best = d_.library.candidates[g.tried[0].candidate];
+    if (!g.accepted) return " No generic term describes it: " + g.reason + ".";
+    return " A generic term describes it, which is no named cause: " + best.info.id + ", " + best.parameter + " = " +
+           format_number(best.value(g.amplitude)) + ".";
+  }
+
   Json gain() const {
     return {{"held_out_log_score", v_.gain.log_score},   {"sd", v_.gain.sd},
             {"needed", d_.options.gain_above},           {"error_before", v_.gain.error_before},
@@ -296,8 +341,7 @@ class DiagnosisText {
             {"split_repeats", d_.measured.split_repeats}};
   }
 
-  Json confirmation() const {
-    const Confirmation& c = d_.confirmation;
+  static Json confirmation(const Confirmation& c) {
     if (!c.done) return nullptr;
     return {{"passed", c.passed},
             {"seeds", c.seeds},
@@ -393,6 +437,7 @@ std::string diagnosis_summary(const Study& study, const StudyDiagnosis& d) {
   }
   for (const Claim& c : d.claims) out += "claim: " + c.sentence + "\n";
   for (const std::string& n : d.notes) out += "note: " + n + "\n";
+  for (const std::string& h : d.hints) out += "hint: " + h + "\n";
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "base/nearest.hpp"
 #include "base/units.hpp"
 #include "infer/seed_scatter.hpp"
+#include "study/height_scan.hpp"
 #include "study/table.hpp"
 
 namespace calx {
@@ -149,6 +150,61 @@ void scatter_of_curve(const Node& node, MeasuredData& data) {
   data.correlation = std::clamp(seen * numbers / (numbers + kUncorrelated), 0.0, kMostCorrelated);
 }
 
+/// A scan with columns of x, y and height: the modes of each repeat, over the rectangle that all of them cover.
+void from_scan(Object& m, const File& file, StudyObservable& o) {
+  const auto column = [&](const char* key, const char* what) {
+    const Node node = m.need(key, what);
+    const std::string name = node.text("a column of the file");
+    const std::size_t at = file.column(node, name);
+    if (split_column(name).unit.empty())
+      node.fail("column \"" + name + "\" of " + file.name + " ends in no unit; call it \"" + name + "_mm\" or \"" +
+                name + "_m\"");
+    return std::make_pair(
+        at, unit_factor(node, split_column(name).unit, key[0] == 'z' ? o.unit : "m", "column \"" + name + "\""));
+  };
+  const auto x = column("x", "the column with the places along x"),
+             y = column("y", "the column with the places along y"), z = column("z", "the column with the heights");
+  const NoiseModel noise = read_noise(m, o.unit);
+  const auto repeat_node = m.find("repeat");
+  const std::size_t group = repeat_node ? file.column(*repeat_node, repeat_node->text("a column of the file")) : 0;
+  struct Points {
+    std::vector<double> x, y, z;
+  };
+  std::map<double, Points> by_repeat;
+  for (std::size_t r = 0; r < file.table.rows.size(); ++r) {
+    Points& to = by_repeat[repeat_node ? file.value(r, group) : 0];
+    to.x.push_back(x.second * file.value(r, x.first)), to.y.push_back(y.second * file.value(r, y.first));
+    to.z.push_back(z.second * file.value(r, z.first));
+    o.scan.x.push_back(to.x.back()), o.scan.y.push_back(to.y.back());
+  }
+  const auto ends_x = std::minmax_element(o.scan.x.begin(), o.scan.x.end());
+  const auto ends_y = std::minmax_element(o.scan.y.begin(), o.scan.y.end());
+  o.scan.low_x = *ends_x.first, o.scan.high_x = *ends_x.second;
+  o.scan.low_y = *ends_y.first, o.scan.high_y = *ends_y.second;
+  if (!noise.given && by_repeat.size() < 2) too_few(*file.node, by_repeat.size());
+  MeasuredData& data = o.measured;
+  data.repeats = by_repeat.size();
+  data.y.assign(scan_modes, 0);
+  for (std::size_t k = 0; k < scan_modes; ++k) data.x.push_back(static_cast<double>(k));
+  for (const auto& one : by_repeat) {
+    data.each.push_back(modes_of(o.scan, one.second.x, one.second.y, one.second.z));
+    if (!std::isfinite(data.each.back()[0]))
+      file.node->fail("repeat " + format_number(one.first) + " of " + file.name + " holds " +
+                      std::to_string(one.second.z.size()) + " points; " + std::to_string(2 * scan_modes) +
+                      " or more, spread over x and y, are needed for the shape of a surface");
+    for (std::size_t k = 0; k < scan_modes; ++k)
+      data.y[k] += data.each.back()[k] / static_cast<double>(by_repeat.size());
+  }
+  double pooled = 0;
+  for (const std::vector<double>& one : data.each)
+    for (std::size_t k = 0; k < scan_modes; ++k) pooled += std::pow(one[k] - data.y[k], 2);
+  pooled = std::sqrt(pooled / (std::max(static_cast<double>(data.repeats) - 1, 1.0) * scan_modes));
+  data.sd_estimated = !noise.given;
+  if (data.sd_estimated && !(pooled > 0))
+    file.node->fail("all repeats are equal; give \"sd\" (of a mode of one repeat)");
+  for (const double v : data.y) data.sd.push_back(noise.given ? sd_at(noise, v) : pooled);
+}
+
 void from_file(Object& m, const Node& file_node, StudyObservable& o) {
   const std::string given = file_node.text("the path of a CSV file");
   const std::string path = file_node.document().absolute_path(given);
@@ -159,6 +215,10 @@ void from_file(Object& m, const Node& file_node, StudyObservable& o) {
     throw Error(e.fault(), e.fault() == Fault::files
                                ? file_node.document().file() + " " + file_node.pointer() + ": " + e.what()
                                : e.what());
+  }
+  if (o.is_map) {
+    o.measured.source = path;
+    return from_scan(m, file, o);
   }
   const NoiseModel noise = read_noise(m, o.unit);
   std::vector<Repeat> repeats = repeats_of(m, file, o);
@@ -238,6 +298,17 @@ void read_reading(Object& observable, const std::vector<StudyCase>& cases, Study
   for (const StudyCase& c : cases) names.push_back(c.name);
   o.case_name = observable.need("case", "the case of the study that gives it").name_of("case", names);
   o.sensor = observable.need("sensor", "the sensor of the case").text("the name of a sensor");
+  if (const auto field = observable.find("field")) {
+    if (o.kind != "pile-profile")
+      field->fail("a field is a map of heights, of the kind \"pile-profile\"; kind \"" + o.kind + "\" has none");
+    o.is_map = true, o.column = field->text("a field of the sensor"), o.against = "mode_1";
+    for (const char* key : {"column", "against"})
+      if (const auto other = observable.find(key)) other->fail("stands beside \"field\"; give one of them");
+    const Node unit = observable.need("unit", "of the heights");
+    o.unit = unit.text("a unit of length");
+    o.factor = unit_factor(unit, "m", o.unit, "the field");
+    return;
+  }
   o.column = observable.need("column", "the column of the sensor").text("a column of the sensor");
   o.against = observable.text("against", "a column of the sensor, \"time_s\" for instance");
   const Node unit = observable.need("unit", "of the values, \"1\" for none");
@@ -270,6 +341,7 @@ void read_measured(Object& observable, StudyObservable& o) {
     if (!at.empty()) node.fail("\"at\" gives the places of values that stand in the study; a file brings its own");
     from_file(m, *file, o);
   } else {
+    if (o.is_map) node.fail("a map needs a \"file\" with columns of x, y and height");
     from_values(m, node, at, o);
   }
   if (const auto n = m.find("autocorrelation")) {

@@ -40,7 +40,9 @@ Block block_of(const StudyObservable& o) {
 
 bool same_reading(const StudyObservable& a, const StudyObservable& b) {
   return a.case_name == b.case_name && a.sensor == b.sensor && a.column == b.column && a.against == b.against &&
-         a.unit == b.unit && a.kind == b.kind && a.measured.x == b.measured.x && a.use != b.use;
+         a.unit == b.unit && a.kind == b.kind && a.measured.x == b.measured.x && a.use != b.use &&
+         a.scan.low_x == b.scan.low_x && a.scan.high_x == b.scan.high_x && a.scan.low_y == b.scan.low_y &&
+         a.scan.high_y == b.scan.high_y;
 }
 
 /// Two campaigns in one block need one sd; where they differ more than this, they stay apart.

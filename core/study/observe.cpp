@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "io/io.hpp"
+#include "study/height_scan.hpp"
 #include "study/table.hpp"
 
 namespace calx {
@@ -81,6 +82,11 @@ std::vector<double> observe(const std::string& folder, const StudyObservable& o)
     const Json summary = read_json(folder + "/summary.json");
     const Json::json_pointer place = Json::json_pointer("/sensors") / o.sensor / "last" / o.column;
     return {summary.contains(place) ? o.factor * number(summary[place]) : kNone};
+  }
+  if (o.is_map) {
+    std::vector<double> modes = modes_of(o.scan, o.scan.x, o.scan.y, heights_at(folder, o));
+    for (double& m : modes) m *= o.factor;
+    return modes;
   }
   const Series series = series_of(folder, o);
   std::vector<double> out;

@@ -73,12 +73,13 @@ std::string cache_key(const CaseFile& file, const std::vector<std::string>& plug
   add(std::to_string(file.settings.seed));
   add(std::string(version()) + " " + git_revision());
   add_files(hash, root, file.settings.folder);
-  static std::map<std::string, std::string> known;  // library -> hash, read once a process
+  static std::map<std::string, std::string> known;  // library or law text -> hash, read once a process
   const std::set<std::string> ids = plugin_ids(file.settings);
   for (const PluginManifest& m : discover_plugins(plugin_search_path(plugin_path))) {
     if (!m.refused.empty() || ids.count(m.id) == 0) continue;
-    std::string& digest = known[m.library];
-    if (digest.empty()) digest = sha256_file(m.library);
+    const std::string& code = m.library.empty() ? m.text : m.library;
+    std::string& digest = known[code];
+    if (digest.empty()) digest = sha256_file(code);
     add(m.id + " " + digest);
   }
   return hash.finish();

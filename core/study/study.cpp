@@ -67,6 +67,7 @@ class StudyReader {
     keep("experiments", study_.experiments);
     keep("roles", study_.roles);
     keep("claims", study_.claims);
+    keep("generic_terms", study_.generic_terms);
     study_.named_effects_only = root.choice("library", "a library of effects", {"calx", "named"}, 0) == 1;
     root.done();
     return study_;

@@ -40,6 +40,12 @@ struct MeasuredData {
   std::string source;                     // file, for reports; empty: stands in the study
 };
 
+/// Where a surface was scanned, m, in the frame of the case: the points of all repeats, and the rectangle around them.
+struct HeightScan {
+  std::vector<double> x, y;
+  double low_x = 0, high_x = 0, low_y = 0, high_y = 0;
+};
+
 struct StudyObservable {
   std::string name, kind, pointer;
   std::string case_name, sensor, column, against;  // against: column that x belongs to; empty: a last value
@@ -47,6 +53,8 @@ struct StudyObservable {
   double factor = 1;                               // value in unit = factor * value of the column
   enum class Use { fit, hold_out } use = Use::fit;
   MeasuredData measured;
+  bool is_map = false;  // column is a field of the sensor, and the figures are the modes of height_scan.hpp
+  HeightScan scan;
   std::vector<double> simulated;  // by another program, at the prior of the parameters: the diagnosis is of that one
   double simulated_sd = 0;        // of one of these, from seed to seed
   double tolerance = 0;  // sd of what the model may miss, in unit: declared, or 0.35 of the mean sd of one repeat
@@ -64,6 +72,7 @@ struct Study {
   std::uint64_t seed = 1;
   std::vector<std::string> assumptions;
   std::string effects = "[]", experiments = "[]", roles = "{}", claims = "[]";  // JSON text that the diagnosis reads
+  std::string generic_terms = "[]";                                             // likewise
   bool named_effects_only = false;                                              // of the library of candidate causes
   std::string text;                                                             // of the file, for its hash
 };

@@ -1,5 +1,6 @@
 // The JSON Schema of a study. Keys follow study.cpp and measured.cpp; tests hold them together.
 #include "config/schema.hpp"
+#include "study/generic_terms.hpp"
 #include "study/study.hpp"
 
 namespace calx {
@@ -71,7 +72,8 @@ Json measured() {
               {"repeats", whole("how many measurements a value is the mean of", 1)},
               {"file", text("path of a CSV file, from this file; its columns end in their unit")},
               {"x", text("column of the places of a curve")},
-              {"y", text("column of the measured values")},
+              {"y", text("column of the measured values, or of the places along y of a map")},
+              {"z", text("column of the heights of a map")},
               {"repeat", text("column that tells repeats apart")},
               {"sd", sd},
               {"relative", number("scatter of one repeat as a share of the value", "1", above_zero)},
@@ -84,13 +86,14 @@ Json measured() {
 Json observable() {
   std::vector<std::string> kinds;
   for (const auto& kind : observable_kinds()) kinds.push_back(kind.first);
-  return object(
+  Json out = object(
       "something that was measured, and the sensor that gives it",
       {{"name", text("what it is called")},
        {"kind", choice("what was measured", kinds)},
        {"case", text("the case of the study that gives it")},
        {"sensor", text("a sensor of that case")},
        {"column", text("a column of the sensor")},
+       {"field", text("instead of a column: a map of heights of the sensor, \"height\" for instance")},
        {"against", text("of a curve: the column its places belong to, \"time_s\" for instance")},
        {"unit", text("unit of the measured values, \"1\" for none")},
        {"use", preset(choice("fitted, or only predicted", {"fit", "hold-out"}), "fit")},
@@ -103,7 +106,9 @@ Json observable() {
                              {"values", list("one per place", quantity("in the observable's unit"))},
                              {"sd", quantity("from seed to seed", {{"minimum", 0}})}})},
        {"conditions", map("what else was set in the laboratory", quantity("in SI or a unit of its own"))}},
-      {"name", "kind", "case", "sensor", "column", "unit", "measured"});
+      {"name", "kind", "case", "sensor", "unit", "measured"});
+  out["oneOf"] = {{{"required", {"column"}}}, {{"required", {"field"}}}};
+  return out;
 }
 
 Json effect() {
@@ -137,6 +142,17 @@ Json experiment() {
                               {"value", list("the load at these times", quantity("SI"))}},
                              {"sensor", "time_s", "value"})}},
       {"name", "sd"});
+}
+
+Json generic_term() {
+  std::vector<std::string> targets;
+  for (const GenericTarget& t : generic_targets()) targets.push_back(t.name);
+  return object("a force known by a formula alone",
+                {{"name", text("small letters, digits and -")},
+                 {"on", choice("where it acts", targets)},
+                 {"formula", text("of speed, load, stress and time of a contact; of speed, time, x, y, z for drag")},
+                 {"scale", number("a typical amplitude", "1", above_zero)}},
+                {"name", "on", "formula", "scale"});
 }
 
 Json claim() {
@@ -180,6 +196,9 @@ std::string study_schema() {
        {"library", preset(choice("of a diagnosis: all effects of Calx, or those named", {"calx", "named"}), "calx")},
        {"roles", map("of a diagnosis: names in the cases by role, for every effect", text("a name"))},
        {"experiments", list("of a diagnosis: measurements that could be made next", experiment())},
+       {"generic_terms", any_of("of a diagnosis: terms by formula, tried where the cause is not in the library",
+                                {Json{{"type", "boolean"}, {"description", "true: those that come with Calx"}},
+                                 list("some of them", any_of("a term", {text("its name"), generic_term()}))})},
        {"claims", list("of a diagnosis: causes that somebody claims", claim())}},
       {"calx_study", "cases", "parameters", "observables"}));
   return out.dump(2) + "\n";

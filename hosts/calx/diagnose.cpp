@@ -13,7 +13,7 @@ namespace {
 void diagnose_command(const StudyFlags& flags, bool json, const std::atomic<bool>& stop, void (*catch_signals)()) {
   if (flags.only_schema()) return;
   StudySession session(flags, json, stop, catch_signals,
-                       {"diagnosis.json", "cost.json", "runs.csv", "extension", "report.html"});
+                       {"diagnosis.json", "cost.json", "runs.csv", "extension", "generic", "report.html"});
   const StudyDiagnosis result = diagnose_study(session.study, *session.executor, session.sink);
   session.progress.end();
   write_diagnosis(session.out, session.study, result);

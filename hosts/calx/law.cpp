@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/text_table.hpp"
 #include "base/units.hpp"
 #include "base/version.hpp"
 #include "io/io.hpp"
@@ -228,6 +229,21 @@ std::string json_of(const LawBench& bench) {
   return out.end_object().text();
 }
 
+/// What the laws were given, as the case has it: materials, and the parameters of each law.
+std::string given_text(const CaseFile& file, const std::string (&pair)[2]) {
+  std::vector<std::vector<std::string>> rows;
+  for (const MaterialSettings& material : file.settings.materials)
+    if (material.name == pair[0] || material.name == pair[1])
+      rows.push_back({"material " + material.name, material.properties.json});
+  for (const ContactSettings& contact : file.settings.contacts) {
+    const auto& [a, b] = contact.between;
+    if (!(a == pair[0] && b == pair[1]) && !(a == pair[1] && b == pair[0])) continue;
+    for (const LawSettings& law : contact.laws)
+      rows.push_back({"given to " + law.name, law.parameters.json == "{}" ? "presets alone" : law.parameters.json});
+  }
+  return text_table(rows);
+}
+
 void run_law(const LawFlags& flags) {
   if (!(flags.bench.radius > 0)) throw Error(Fault::usage, "--radius: expected a radius above 0, m");
   const std::vector<std::string> search = plugin_search_path(flags.plugin_path);
@@ -253,7 +269,10 @@ void run_law(const LawFlags& flags) {
     std::printf("%s\n", json_of(bench).c_str());
     return;
   }
-  std::printf("%s, %s\n", laws_text(bench).c_str(), bench.pair.c_str());
+  std::printf(
+      "%s, %s%s\n%s", laws_text(bench).c_str(), bench.pair.c_str(),
+      flags.case_path.empty() ? ": the materials of the bench, to be changed by --set /materials/KEY=value" : "",
+      given_text(file, pair).c_str());
   for (const auto& one : figures(bench)) std::printf("  %-28s %s\n", one.first.c_str(), one.second.c_str());
   std::printf("%s/law.html\n", out.c_str());
 }

@@ -181,13 +181,18 @@ int main(int argc, char** argv) {
   run_command->callback([&] { run(run_flags); });
 
   auto* check_command = app.add_subcommand("check", "validate a case and show what a run would cost");
-  bool print_schema = false;
+  bool print_schema = false, sensors = false;
   check_flags.add_common(*check_command);
   check_command->get_option("case")->required(false);
   check_command->add_flag("--print-schema", print_schema, "print the JSON Schema of a case");
+  check_command->add_flag("--sensors", sensors, "list the built-in kinds of sensors with their keys");
   check_command->callback([&] {
     if (print_schema) {
       std::printf("%s\n", calx::case_schema().c_str());
+      return;
+    }
+    if (sensors) {
+      std::fputs(calx::sensor_kinds_text().c_str(), stdout);
       return;
     }
     if (check_flags.run.case_path.empty()) throw calx::Error(calx::Fault::usage, "check: a case file is needed");

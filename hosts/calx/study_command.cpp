@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "options.hpp"
+#include "study/diagnose.hpp"
 
 namespace calx {
 namespace {
@@ -68,6 +69,7 @@ StudySession::StudySession(const StudyFlags& flags, bool json, const std::atomic
   std::error_code failed;
   fs::create_directories(out, failed);
   if (failed) throw Error(Fault::files, out + ": cannot be made: " + failed.message());
+  prepare_generic_terms(study, out);
   catch_signals();
   sink.progress = [this](const StudyProgress& p) { progress.show(p); };
   sink.message = [this](const std::string& line) { progress.message(line); };

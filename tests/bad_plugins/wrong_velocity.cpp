@@ -1,6 +1,11 @@
 // A motion whose velocity is not the derivative of its pose: half as fast.
 #include <calx/rigid_motion.hpp>
 
+#ifndef BAD_ID
+#define BAD_ID "test.wrong-velocity"
+#define BAD_SPEED 0.5
+#endif
+
 namespace {
 
 class WrongVelocity : public calx::rigid::Motion {
@@ -11,14 +16,14 @@ class WrongVelocity : public calx::rigid::Motion {
     if (!(t > 0)) return;
     const double end = t < 1 ? t : 1;
     out.displacement[0] = end;
-    out.velocity[0] = t < 1 ? 0.5 : 0;
+    out.velocity[0] = t < 1 ? BAD_SPEED : 0;
   }
   double duration() const noexcept override { return 1; }
   double top_speed(double) const noexcept override { return 1; }
 };
 const calx_descriptor WrongVelocity::descriptor = {sizeof(calx_descriptor),
                                                    0,
-                                                   "test.wrong-velocity",
+                                                   BAD_ID,
                                                    CALX_MOTION,
                                                    "Wrong velocity",
                                                    "1.0.0",

@@ -91,12 +91,12 @@ TEST_CASE("unknown, missing, doubled and unfit values say what would be right") 
         at + "/cycels: unknown key for calx.turn 1.0.0; did you mean \"cycles\"?");
   CHECK(message(R"({"stroke": 0, "base_x": 3})") ==
         at + "/base_x: unknown key for calx.turn 1.0.0; did you mean \"base\"?");
-  CHECK(message("{}") == at + "/stroke: is missing; calx.turn 1.0.0 needs the length of a stroke in m");
+  CHECK(message("{}") == at + "/stroke: is missing; calx.turn 1.0.0 needs stroke, m: length of a stroke");
   const calx_field choice[] = {
       {"profile", "trapezoid|cosine", "course of the speed", 0, 1, 0, CALX_FIELD_CHOICE | CALX_FIELD_REQUIRED, 0}};
   CHECK_THROWS_WITH(resolve_parameters({"{}", "/p", ""}, {{choice, 1}}, nullptr, "calx.turn 1.0.0", "case.json"),
-                    "case.json /p/profile: is missing; calx.turn 1.0.0 needs the course of the speed, one of "
-                    "\"trapezoid\", \"cosine\"");
+                    "case.json /p/profile: is missing; calx.turn 1.0.0 needs profile, one of \"trapezoid\", "
+                    "\"cosine\": course of the speed");
   CHECK(message(R"({"stroke": 0, "swing": 1, "swing_deg": 1})") ==
         at + "/swing_deg: stands beside \"swing\"; give one of them");
   CHECK(message(R"({"stroke": 0, "profile": "cosin"})") ==

@@ -1,5 +1,5 @@
 """readme_code.py SOURCE CALX: the code blocks of abi/README.md and abi/kinds.md cannot drift from what is built and run: lines of
-c and cpp blocks stand, in that order, in one source of the example law, of the templates or of readme/, which other tests build; json is
+c and cpp blocks stand, in that order, in one source of the example laws, of the templates or of readme/, which other tests build; json is
 the example's manifest; every calx command and option of sh blocks is known."""
 import json
 import pathlib
@@ -20,7 +20,7 @@ def squeezed(line):
 
 
 def built():
-    for folder in ("examples/third_party_law", "abi/template", "tests/conformance/readme"):
+    for folder in ("examples/third_party_law", "examples/third_party_hertz", "abi/template", "tests/conformance/readme"):
         for path in sorted((SOURCE / folder).rglob("*")):
             if path.suffix in (".c", ".h", ".cpp", ".hpp"):
                 yield [squeezed(line) for line in path.read_text().splitlines()]

@@ -1,6 +1,6 @@
 # Begins a plugin of each kind with calx plugin new, builds it against an installed package in an empty prefix, runs its
 # own ctest and its case; does the same with the projects of examples/. BUILD: build tree of Calx; SOURCE: its source; CALX:
-# its program; SCRATCH: a folder to use.
+# its program; PYTHON: Python 3; SCRATCH: a folder to use.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT status EQUAL 0)
@@ -23,6 +23,7 @@ endfunction()
 file(REMOVE_RECURSE ${SCRATCH})
 file(MAKE_DIRECTORY ${SCRATCH}/projects)
 run(${CMAKE_COMMAND} --install ${BUILD} --component abi --prefix ${SCRATCH}/prefix)
+run(${PYTHON} ${SOURCE}/tests/hygiene/links.py ${SCRATCH}/prefix)  # links of the installed pages lead to what is installed
 foreach(kind contact-law contact-law-text geometry motion servo particle-force sensor effect)
   set(project ${SCRATCH}/projects/my-${kind})
   run(${CALX} plugin new my-${kind} --kind ${kind} --in ${SCRATCH}/projects)

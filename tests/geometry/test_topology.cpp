@@ -129,3 +129,29 @@ TEST_CASE("build names the part and quotes the plugin") {
     CHECK(e.fault() == Fault::settings);
   }
 }
+
+TEST_CASE(
+    "an edge that meets two others halfway counts as a rim, lets nothing through and is felt by deep overlaps only") {
+  // A plate of one square beside two half as wide: the corner (0, 0.5) lies on the square's edge.
+  const Surface s = mesh({{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, {1, 0, 0}, {1, 0.5, 0}, {0, 0.5, 0}, {1, 1, 0}},
+                         {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 6, 6, 5, 7, 6, 7, 2});
+  CHECK(s.faults().open_edges == 10);  // seven of the outline, and three of the seam
+  const double r = 0.1;
+  const auto most = [&](double overlap) {
+    std::size_t out = 0;
+    for (int k = -100; k <= 100; ++k)
+      for (const double y : {0.3, 0.5, 0.507}) {
+        const auto c = contacts(s, {0.002 * k, y, r - overlap}, r);
+        REQUIRE(c.size() > 0);
+        CHECK(c[0].normal.z == doctest::Approx(1).epsilon(1e-9));
+        CHECK(c[0].distance == doctest::Approx(r - overlap).epsilon(1e-9));
+        out = std::max(out, c.size());
+      }
+    return out;
+  };
+  // A rim within the radius is seen under acos(1 - overlap / r) at most; below the 15 degrees of a crease, that is
+  // below 3.4 % of the radius, it is one contact with the face.
+  CHECK(most(0.01 * r) == 1);
+  CHECK(most(0.033 * r) == 1);
+  CHECK(most(0.1 * r) == 2);
+}

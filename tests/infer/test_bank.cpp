@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "infer/bank.hpp"
+#include "infer/posterior.hpp"
 #include "infer/small_problem.hpp"
 
 using namespace calx::infer;
@@ -84,4 +84,18 @@ TEST_CASE("a step is found at its place, in its block, and noise is not") {
   CHECK(bank.terms[fit.term].family == "step");
   CHECK(bank.terms[fit.term].place == doctest::Approx(19).epsilon(0.1));
   CHECK(fit.block_share[0] > 0.99);
+}
+
+TEST_CASE("what an effect of the library does is not outside the library, too") {
+  const LinearModel model = small_model();
+  const Observables& all = model.observables;
+  const Bank bank = make_bank(all);
+  // Log odds lost by terms that an effect imitates. The rise is one-sided: it cannot imitate a fall.
+  const auto lost = [&](double amplitude) {
+    const Metric metric(Matrix(all.sd().cwiseAbs2().asDiagonal()), Vector(amplitude * model.signatures[0]));
+    return fit_unknown(bank, whiten_bank(bank, all, metric), 2, metric).odds -
+           weigh(model, bank, metric, {}).discrepancy.odds;
+  };
+  CHECK(lost(1.5) > 2);
+  CHECK(lost(-1.5) < 0.1);
 }

@@ -17,10 +17,12 @@ mv "$scratch/first" "$scratch/prefix"
 prefix=$scratch/prefix
 unset CALX_PLUGIN_PATH
 
-for file in bin/calx share/calx/template/sensor/try.json share/doc/calx/kinds.md share/calx/examples/two_balls.json include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
+for file in bin/calx share/calx/template/sensor/try.json share/doc/calx/kinds.md share/doc/calx/case.md share/calx/examples/plugins/drag/stokes_drag.law.h share/calx/examples/two_balls.json include/calx/abi.h include/calx/plugin.hpp lib/cmake/CalxAbi/CalxAbiConfig.cmake lib/pkgconfig/calx-abi.pc; do
   [[ -e $prefix/$file ]] || fail "$file is not installed"
 done
 if grep -rIl -e "$build" -e "$root" -e "$scratch/first" "$prefix"; then fail "the files above name the build machine"; fi
+env PYTHONDONTWRITEBYTECODE=1 python3 "$root/tests/hygiene/links.py" "$prefix" >"$scratch/links.txt" ||
+  fail "links of installed pages: $(cat "$scratch/links.txt")"
 if ldd "$prefix/bin/calx" | grep 'not found'; then fail "bin/calx lacks libraries"; fi
 "$prefix/bin/calx" --version
 
@@ -39,6 +41,12 @@ python3 "$root/tests/hygiene/exports.py" "$scratch/law/build/plugins"
 "$prefix/bin/calx" plugin describe org.example.spring --plugin-path "$scratch/law/build/plugins" >"$scratch/describe.txt" ||
   fail "calx plugin describe org.example.spring"
 grep -q 'normal stiffness' "$scratch/describe.txt" || fail "calx plugin describe org.example.spring does not show its parameters"
+
+# Plugins of Calx that its guide names as examples, built from what is installed.
+{ cmake -S "$prefix/share/calx/examples/plugins" -B "$scratch/examples" -DCMAKE_PREFIX_PATH="$prefix" &&
+  cmake --build "$scratch/examples"; } >"$scratch/examples.log" 2>&1 || fail "examples/plugins: $(tail -20 "$scratch/examples.log")"
+"$prefix/bin/calx" plugin list --plugin-path "$scratch/examples/plugins" >"$scratch/list.txt" || fail "calx plugin list: $(cat "$scratch/list.txt")"
+grep -q calx.stokes-drag "$scratch/list.txt" || fail "calx.stokes-drag of examples/plugins is not listed"
 
 # A plugin of the templates, begun, built and checked with what is installed alone.
 "$prefix/bin/calx" plugin new my-force --kind particle-force --in "$scratch" >"$scratch/new.log"

@@ -1,5 +1,11 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
 #include "measure/fake_world.hpp"
 
 using namespace calx;
@@ -15,12 +21,34 @@ FakeWorld small_world() {
   return world;
 }
 
+/// What stands between ` and ` of text, "pre-shear" and the like left out.
+std::set<std::string> quoted_words(const std::string& text) {
+  std::set<std::string> words;
+  std::istringstream in(text);
+  std::string part;
+  for (bool inside = false; std::getline(in, part, '`'); inside = !inside)
+    if (inside && part.front() != '"') words.insert(part);
+  return words;
+}
+
+/// The row of a sensor kind in docs/case.md: keys, columns.
+std::pair<std::set<std::string>, std::set<std::string>> documented(const std::string& kind) {
+  std::ifstream page(CALX_SOURCE_DIR "/docs/case.md");
+  for (std::string line; std::getline(page, line);) {
+    const std::string start = "| `" + kind + "` |";
+    if (line.compare(0, start.size(), start) != 0) continue;
+    const std::size_t bar = line.find('|', start.size());
+    return {quoted_words(line.substr(start.size(), bar - start.size())), quoted_words(line.substr(bar))};
+  }
+  return {};
+}
+
 }  // namespace
 
 TEST_CASE("every built-in kind is known and makes a sensor with columns that end in a unit") {
   FakeWorld world = small_world();
   world.add_cylinder("drum", {0, 0, 0}, {0, 1, 0}, 0.5);
-  const std::pair<const char*, const char*> kinds[] = {
+  const std::map<std::string, std::string> kinds = {
       {"mass", R"({"region": "hopper"})"},
       {"cycle-mass", R"({"region": "canister", "motion": "rotor turn"})"},
       {"flow", R"({"point": [0, 0, 0], "normal": [0, 0, -1]})"},
@@ -33,17 +61,45 @@ TEST_CASE("every built-in kind is known and makes a sensor with columns that end
       {"inertial-number", R"({"region": "hopper"})"},
       {"residue", R"({"part": "rotor"})"},
       {"part-load", R"({"part": "rotor"})"},
+      {"stress", R"({"parts": ["rotor"], "area": 0.1})"},
+      {"cell-density", R"({"motion": "rotor turn", "area": 0.1, "lid": "rotor", "height": 0.1})"},
+      {"wall-friction", R"({"motion": "rotor turn", "parts": ["rotor"], "area": 0.1})"},
+      {"yield-locus", R"({"motion": "rotor turn", "parts": ["rotor"], "area": 0.1})"},
       {"energy", "{}"},
       {"mass-ledger", "{}"}};
-  for (const auto& kind : kinds) {
-    CHECK(is_builtin_sensor(kind.first));
-    const auto sensor = world.sensor(kind.second, kind.first);
+  CHECK(kinds.size() == sensor_kinds().size());
+  for (const SensorKind& kind : sensor_kinds()) {
+    CAPTURE(std::string(kind.name));
+    CHECK(is_builtin_sensor(kind.name));
+    const std::string json = kinds.at(kind.name);
+    const auto sensor = world.sensor(json, kind.name);
     CHECK(sensor->name() == "probe");
-    CHECK(sensor->kind() == kind.first);
+    CHECK(sensor->kind() == kind.name);
     CHECK(sensor->every() == 0.01);
     const std::vector<std::string> columns = sensor->columns();
     CHECK(sensor->sample(world).size() == columns.size());
     for (const std::string& column : columns) CHECK(column.find('_') != std::string::npos);
+
+    // The page and the list name its columns, and the keys it reads, which the message of a wrong key lists.
+    const auto [keys, named] = documented(kind.name);
+    for (const std::string& column : columns)
+      CHECK((named.count(column) == 1 || (column.compare(0, 3, "in_") == 0 && named.count("in_<region>_kg"))));
+    if (std::string(kind.name) != "mass-ledger") CHECK(named.size() == columns.size());
+    std::string wrong = json;
+    wrong.insert(1, wrong == "{}" ? "\"zzzzzzzzzzzzzzzzzzzz\": 1" : "\"zzzzzzzzzzzzzzzzzzzz\": 1, ");
+    const std::string message = world.error_of(wrong, kind.name);
+    std::istringstream listed(message.substr(message.find("known are") + 9));
+    std::string words;
+    for (std::string word; listed >> word;) {
+      word.erase(std::remove_if(word.begin(), word.end(), [](char c) { return c == '"' || c == ','; }), word.end());
+      if (word == "name" || word == "kind" || word == "every") continue;
+      CHECK(keys.count(word) == 1);
+      words += word + " ";
+    }
+    std::string told = std::string(kind.keys) + " ";
+    told.erase(std::remove(told.begin(), told.end(), ','), told.end());
+    for (const std::string& key : keys) CHECK((" " + told).find(" " + key + " ") != std::string::npos);
+    CHECK(std::count(told.begin(), told.end(), ' ') == std::max<long>(1, std::count(words.begin(), words.end(), ' ')));
   }
   CHECK_FALSE(is_builtin_sensor("calx.sensor"));
 }

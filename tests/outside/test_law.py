@@ -16,6 +16,10 @@ class Law(CalxTest):
         needs("calx.linear")
         out = self.calx("law", "calx.linear", "--set", "/parameters/kn=2e4", "--set", "/parameters/friction=0.3", "-o", "bench").out
         self.assertRegex(out, r"(?m)^  effective mass +5\.236e-06 kg$")
+        # What the user did not give is told.
+        self.assertRegex(out, r"^calx\.linear, i-j: the materials of the bench, to be changed by --set /materials/KEY=value\n")
+        self.assertRegex(out, r'(?m)^  material i +\{"density":2500')
+        self.assertRegex(out, r'(?m)^  given to calx\.linear +\{.*"kn":2e4|20000')
         self.assertRegex(out, r"(?m)^  largest tangential force .*, 0\.3 of the normal force$")
         self.assertTrue(out.endswith("bench/law.html\n"), out)
         head, rows = self.table("bench/press.csv")

@@ -32,7 +32,10 @@ FULL = {
         {**STUDY["observables"][1], "measured": {**STUDY["observables"][1]["measured"], "autocorrelation": 0.3}},
         {**STUDY["observables"][1], "name": "elsewhere", "simulated": {"values": [4.0, 4.1]}},
         {**STUDY["observables"][1], "name": "places", "at": [{"value": 2, "unit": "ms"}, 0.006],
-         "measured": {"values": [4.0, 4.1], "sd": 0.1}}]}
+         "measured": {"values": [4.0, 4.1], "sd": 0.1}},
+        {"name": "scan", "kind": "pile-profile", "case": "cup", "sensor": "surface", "field": "height", "unit": "mm",
+         "measured": {"file": "scan.csv", "x": "x_mm", "y": "y_mm", "z": "z_mm", "repeat": "run"}}],
+    "generic_terms": ["drag", {"name": "own", "on": "grain pull", "formula": "time", "scale": 0.1}]}
 
 
 def keys_of_schema(schema):
@@ -64,7 +67,11 @@ def keys_of(value):
 class Schema(CalxTest):
     def setUp(self):
         super().setUp()
-        self.write(cup())
+        case = cup()
+        case["sensors"].append({"name": "surface", "kind": "height-map", "region": "cup", "cell": 0.002, "every": 0.01})
+        self.write(case)
+        (self.dir / "scan.csv").write_text("run,x_mm,y_mm,z_mm\n" + "".join(
+            f"{run},{x},{y},{run + x + y}\n" for run in (1, 2) for x in range(-3, 4) for y in range(-3, 4)))
         (self.dir / "curve.csv").write_text(CURVE)
         printed = self.calx("calibrate", "--print-schema")
         self.assertEqual((printed.code, printed.err), (0, ""))

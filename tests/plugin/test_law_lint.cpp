@@ -61,6 +61,14 @@ TEST_CASE("each broken line of broken.law.h is found, and no other") {
   CHECK(broken.size() == 11);
 }
 
+TEST_CASE("what the dialect has instead of a forbidden word is told") {
+  CHECK(lint_body("  if (c->overlap > R(0.0)) out->fx = p->k;").find("if is not in the dialect; write cond ? a : b") !=
+        std::string::npos);
+  CHECK(lint_body("  out->fx = pow(c->overlap, R(1.5));")
+            .find("pow is not in the dialect; write products, and calx_sqrt for halves of powers") !=
+        std::string::npos);
+}
+
 TEST_CASE("a text cannot reach memory or functions that are not its own") {
   CHECK(lint_body("  out->fx = p->k * c->overlap;") == "");
   CHECK(lint_body("  real c2 = R(1.0);\n  out->fx = c2 + R(1.0);") == "");

@@ -81,6 +81,32 @@ TEST_CASE("a law that is a text gives the bits of the same text in a library") {
   CHECK(from[0].sha256 == sha256_file(scratch.path("spring.law.h")));
 }
 
+TEST_CASE("columns that limit the step of a text have the units the step is computed with") {
+  Scratch scratch;
+  std::string text = spring();
+  text.replace(text.find("X(kn, \"N/m\""), 11, "X(kn, \"Pa\"");
+  scratch.write("spring.law.h", text);
+  const auto with = [&](const std::string& keys) {
+    scratch.write("spring.plugin.json",
+                  text_manifest("org.me.spring", CALX_CONTACT_LAW, "\"text\": \"spring.law.h\", " + keys));
+    return refusal(scratch.path());
+  };
+  CHECK(with("\"stiffness\": [\"kn\"]")
+            .find("spring.plugin.json \"stiffness\": column \"kn\" is in Pa, it must be in N/m; "
+                  "the modulus of a Hertz law belongs under \"modulus\"") != std::string::npos);
+  CHECK(with("\"modulus\": [\"kt\"]").find("\"modulus\": column \"kt\" is in N/m, it must be in Pa") !=
+        std::string::npos);
+  CHECK(with("\"reach\": [\"mu\"]").find("\"reach\": column \"mu\" is in 1, it must be in m") != std::string::npos);
+
+  // Hertz: k = d(4/3 E sqrt(r) d^1.5)/dd = 2 E sqrt(r d), and the step a tenth of 2 pi sqrt(m / k).
+  CHECK(with("\"modulus\": [\"kn\"], \"stiffness\": [\"kt\"]") == "no error");
+  PluginRegistry registry({scratch.path()});
+  const ContactLaw law(registry.create_with_values("org.me.spring", CALX_CONTACT_LAW, "", "", {}));
+  const double k = 1e3 + 2 * 1e7 * std::sqrt(1e-3 * 4e-5);
+  CHECK(law.stable_dt({1e7, 0.3, 1e3, 0.4}, 1e-5, 1e-3, 4e-5) ==
+        doctest::Approx(0.2 * 3.14159265358979324 * std::sqrt(1e-5 / k)).epsilon(1e-12));
+}
+
 TEST_CASE("a law that is a text may reach beyond touch and keep history so far") {
   Scratch scratch;
   scratch.write("golden_law.law.h", read_text(CALX_SOURCE_DIR "/tests/golden/golden_law.law.h"));

@@ -125,8 +125,10 @@ TEST_CASE("moduli give the Rayleigh limit also where the law does not read them"
 TEST_CASE("without any limit the case must give a step") {
   CaseText c = dropped();
   c.sources = "[]";
-  CHECK_THROWS_WITH_AS(Simulation(c.file(), test_options()), doctest::Contains("no limit is known for the time step"),
-                       Error);
+  CHECK_THROWS_WITH_AS(
+      Simulation(c.file(), test_options()),
+      doctest::Contains("no limit is known for the time step: no source says which particles come; give \"step\" in s"),
+      Error);
 }
 
 TEST_CASE("a spelling mistake in a material is told") {

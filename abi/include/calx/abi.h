@@ -71,7 +71,7 @@ typedef struct calx_field {
 #define CALX_FIELD_ACCUMULATE (1u << 3) /* particle column a law adds to and never writes */
 #define CALX_FIELD_CHOICE (1u << 4)     /* unit holds names separated by '|'; the value is the index of one, from 0 */
 #define CALX_FIELD_REQUIRED (1u << 5)   /* the user must give it; the preset only keeps tables and tools working */
-/* Three consecutive rows x, y, z of one vector: the names end in _x _y _z, users write one array of three. */
+/* Three consecutive rows x, y, z of one vector. Names of parameters end in _x _y _z; a case has an array of three. */
 #define CALX_VEC(group) ((uint32_t)(group) << 8)
 
 typedef struct calx_descriptor {

@@ -82,7 +82,7 @@ typedef struct calx_contact_law {
    * carries the options of the descriptor's parameter table. Set-up only. [main] */
   calx_status(CALX_CALL* derive)(const calx_instance* self, const calx_host* host, const double* material_i,
                                  const double* material_j, const double* given, double* pair);
-  /* Largest stable step of one contact, s; kg, m; overlap: the largest expected, m. Or null. [main] */
+  /* Largest stable step of one contact, s; kg, m; overlap, m: that of the fastest impact expected. Or null. [main] */
   double(CALX_CALL* stable_dt)(const double* pair, double m_eff, double r_eff, double overlap);
   /* Largest gap at which the wrench can be non-zero, m, finite; null: acts only while touching. r_j is 0 for a wall; of
    * two spheres it does not fall when a radius grows. [main] */
