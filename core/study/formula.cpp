@@ -51,8 +51,12 @@ class Translator {
     ++at_;
   }
 
+  void deeper() {
+    if (++depth_ > deepest) refuse("too many parentheses or signs in each other; at most " + std::to_string(deepest));
+  }
+
   std::string sum() {
-    if (++depth_ > deepest) refuse("too many parentheses in each other; at most " + std::to_string(deepest));
+    deeper();
     std::string out = product();
     while (peek() == '+' || peek() == '-') {
       const char sign = text_[at_++];
@@ -75,7 +79,10 @@ class Translator {
     const char c = peek();
     if (c == '-') {
       ++at_;
-      return "(R(0.0) - " + factor() + ")";
+      deeper();
+      const std::string inner = factor();
+      --depth_;
+      return "(R(0.0) - " + inner + ")";
     }
     if (c == '(') {
       ++at_;

@@ -12,8 +12,6 @@ namespace {
 using infer::Verdict;
 
 constexpr std::size_t most_of_a_kind = 3;
-/// Causes nearer than this are one group (core/infer/confusability.hpp); the distance grows as the root of the repeats.
-constexpr double apart = 3;
 constexpr double most_repeats = 20;  // more of the same is no plan
 constexpr double off_below = 0.05;
 
@@ -64,8 +62,9 @@ class Hints {
         if (i >= d_.model.effects.size() || k >= d_.model.effects.size()) continue;
         const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
         const double distance = d_.confusion.distance(row, column);
-        if (!(distance > 0) || distance >= apart) continue;
-        const double times = std::ceil(std::pow(apart / distance, 2));
+        if (!(distance > 0) || distance >= infer::least_apart) continue;
+        // The distance grows as the root of the repeats.
+        const double times = std::ceil(std::pow(infer::least_apart / distance, 2));
         const std::string pair = d_.model.effects[i].id + " and " + d_.model.effects[k].id;
         out_.push_back(times <= most_repeats
                            ? pair + " are " + rounded(distance) + " standard errors apart; " + format_number(times) +

@@ -64,6 +64,7 @@ TEST_CASE("a formula that is none is refused with its place") {
   CHECK(says(refusal("speed; c"), "\";\" is not expected"));
   CHECK(says(refusal("1e"), "exponent"));
   CHECK(says(refusal(std::string(100, '(')), "too many parentheses"));
+  CHECK(says(refusal(std::string(2000000, '-')), "too many parentheses or signs"));
   CHECK(says(refusal("speed->x"), "\">\" is not known"));
 }
 

@@ -77,6 +77,8 @@ class GenericTerm(unittest.TestCase):
         self.assertLess(g["confirmation"]["error_after"], 0.6 * g["confirmation"]["error_before"])
         self.assertFalse(any(c["named"] for c in d["causes"]))
         self.assertLessEqual(d["runs"]["used"], d["runs"]["planned"])
+        # The true cause is not in this study's library, and the hints say so.
+        self.assertTrue(any("leaves out" in h and "calx.moisture-cohesion" in h for h in d["hints"]), d["hints"])
         out = self.dir / "moist" / "study.out"
         self.assertEqual(d["extension"], "extension/hopper.json")
         self.assertIn("generic.grain-pull", run("check", out / d["extension"]))
@@ -87,6 +89,7 @@ class GenericTerm(unittest.TestCase):
         d = self.diagnosed("scale", [], lambda t: -1.5 if t > 0.4 else 0, TERMS)
         self.assertEqual(d["verdict"], "unknown")
         self.assertFalse(d["generic_term"]["accepted"], d["generic_term"])
+        self.assertFalse(any("generic_terms" in h for h in d["hints"]), d["hints"])
         self.assertIsNone(d["extension"])
         self.assertFalse((self.dir / "scale" / "study.out" / "extension").exists())
 
