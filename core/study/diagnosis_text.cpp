@@ -326,7 +326,7 @@ class DiagnosisText {
     const Candidate& best = d_.library.candidates[g.tried[0].candidate];
     if (!g.accepted) return " No generic term describes it: " + g.reason + ".";
     return " A generic term describes it, which is no named cause: " + best.info.id + ", " + best.parameter + " = " +
-           format_number(best.value(g.amplitude)) + ".";
+           brief_quantity(best.value(g.amplitude), "1") + ".";
   }
 
   Json gain() const {

@@ -30,6 +30,7 @@ class GenericTrial {
     own.kept.clear(), own.model.effects.clear(), own.model.signatures.clear(), own.model.signature_variance.clear();
     const std::vector<std::size_t> library = simulator_.effects;
     simulator_.effects = terms;
+    simulator_.stage_of_effects = "signatures of the generic terms";
     add_signatures(own, terms);
     simulator_.effects = own.kept;
     if (!own.kept.empty()) {
@@ -64,7 +65,6 @@ class GenericTrial {
         points.push_back({m.u, static_cast<int>(e),
                           Vector::Constant(1, d_.options.step_scales * d_.library.candidates[terms[e]].effect.scale),
                           m.base_seed + static_cast<std::uint64_t>(s)});
-    d_.ledger.stage = "signatures of the generic terms";
     const Matrix runs = simulator_.run(points);
     const infer::Denoiser denoise(m.observables, m.scatter);
     for (std::size_t e = 0; e < terms.size(); ++e) {

@@ -102,6 +102,10 @@ const GenericTarget& target_of(const std::string& name) {
   return *std::find_if(all.begin(), all.end(), [&](const GenericTarget& t) { return t.name == name; });
 }
 
+std::string amount_words(const GenericTerm& term) {
+  return target_of(term.target).doc + " is amount" + (term.formula == "1" ? "" : " * (" + term.formula + ")");
+}
+
 std::string law_text(const GenericTerm& term) {
   const GenericTarget& target = target_of(term.target);
   const bool is_drag = target.name == "drag", on_wall = begins_with(target.name, "wall");
@@ -138,14 +142,14 @@ std::string manifest_text(const GenericTerm& term) {
                           {"scale", term.scale},
                           {"sign", "positive"},
                           {"range", {0, highest_in_scales * term.scale}},
-                          {"doc", target.doc + " is amount * (" + term.formula + "), " + target.unit}}}},
+                          {"doc", amount_words(term) + ", " + target.unit}}}},
                        {"roles", roles},
                        {"touches", effect_observables()},
                        {"rivals", Json::array()},
                        {"edits", {edit}}};
   Json plugin = {{"id", term.id()},
                  {"kind", is_drag ? "calx.particle-force/1" : "calx.contact-law/1"},
-                 {"summary", "Generic term, no named cause: " + target.doc + " is amount * (" + term.formula + ")."},
+                 {"summary", "Generic term, no named cause: " + amount_words(term) + "."},
                  {"text", symbol_of(term) + ".law.h"},
                  {"effect", effect}};
   const Json out = {{"calx_plugin", 1},         {"abi", {{"major", 1}, {"minor", 0}}},

@@ -85,6 +85,13 @@ class GenericTerm(unittest.TestCase):
         page = (out / "report.html").read_text()
         self.assertIn("A generic term, which is no named cause", page)
 
+    def test_a_fault_of_the_scale_that_looks_like_slow_flow_is_not_named(self):
+        # A step of the scale that is not in the library: a pull between grains may describe it, as less flows; no cause is named.
+        d = self.diagnosed("late", [], lambda t: 1.5 if t > 0.4 else 0, TERMS)
+        self.assertEqual(d["verdict"], "unknown")
+        self.assertFalse(any(c["named"] for c in d["causes"]))
+        self.assertIn("no named cause", d["generic_term"]["kind"])
+
     def test_a_loss_that_no_pull_or_drag_makes_is_described_by_none(self):
         d = self.diagnosed("scale", [], lambda t: -1.5 if t > 0.4 else 0, TERMS)
         self.assertEqual(d["verdict"], "unknown")
