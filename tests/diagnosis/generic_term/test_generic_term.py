@@ -96,6 +96,9 @@ class GenericTerm(unittest.TestCase):
         d = self.diagnosed("scale", [], lambda t: -1.5 if t > 0.4 else 0, TERMS)
         self.assertEqual(d["verdict"], "unknown")
         self.assertFalse(d["generic_term"]["accepted"], d["generic_term"])
+        # Refused before runs are spent on its confirmation.
+        self.assertIn("does not fit the data", d["generic_term"]["reason"])
+        self.assertIsNone(d["generic_term"]["confirmation"])
         self.assertFalse(any("generic_terms" in h for h in d["hints"]), d["hints"])
         self.assertIsNone(d["extension"])
         self.assertFalse((self.dir / "scale" / "study.out" / "extension").exists())
