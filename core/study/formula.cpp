@@ -1,6 +1,8 @@
 #include "study/formula.hpp"
 
 #include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 
 #include "base/nearest.hpp"
@@ -40,7 +42,9 @@ class Translator {
   static constexpr int deepest = 60;
 
   [[noreturn]] void refuse(const std::string& what) const {
-    node_.fail("\"" + text_ + "\" at character " + std::to_string(at_ + 1) + ": " + what);
+    constexpr std::size_t shown = 80;
+    node_.fail("\"" + (text_.size() > shown ? text_.substr(0, shown) + "..." : text_) + "\" at character " +
+               std::to_string(at_ + 1) + ": " + what);
   }
   char peek() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
@@ -120,6 +124,8 @@ class Translator {
       if (digits() == 0) refuse("the exponent of a number has digits");
       exponent = text_.substr(from, at_ - from);
     }
+    if (!std::isfinite(std::strtod(text_.substr(start, at_ - start).c_str(), nullptr)))
+      refuse("a number is below 1e308");
     return "R(" + whole + fraction + exponent + ")";
   }
 

@@ -218,7 +218,7 @@ std::vector<GenericTerm> read_generic_terms(const Study& study) {
   std::vector<std::string> known;
   for (const GenericTerm& t : usual_generic_terms()) known.push_back(t.name);
   std::vector<GenericTerm> out;
-  for (const Node& item : node.items("true, or a list of generic terms")) {
+  for (const Node& item : node.items("generic terms, or true")) {
     GenericTerm term;
     if (item.json().is_string())
       term =

@@ -123,6 +123,7 @@ class BadPlugin(CalxTest):
             self.assertRegex(line, r"project/build/plugins holds it: --plugin-path \S+project/build/plugins$")
         doctor = self.calx("plugin", "doctor", "test.force", "--plugin-path", "project/build/plugins")
         self.assertIn("Nothing is wrong with it", doctor.out)
+        self.fails(6, r'calx\.bxo: no such file, .* did you mean "calx\.box"\?', result=self.calx("plugin", "doctor", "calx.bxo"))
         self.fails(6, 'plugin folder "yours" does not exist', result=self.calx("run", path.name, "--plugin-path", "yours"))
 
 
