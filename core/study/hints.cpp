@@ -14,6 +14,8 @@ using infer::Verdict;
 constexpr std::size_t most_of_a_kind = 3;
 constexpr double most_repeats = 20;  // more of the same is no plan
 constexpr double off_below = 0.05;
+/// Standard deviations of the data at the 95 % end of a strength that data and prior bound alike: 1.645 / sqrt(2).
+constexpr double told = 1.16;
 
 class Hints {
  public:
@@ -35,14 +37,20 @@ class Hints {
  private:
   const Candidate& candidate(std::size_t e) const { return d_.library.candidates[d_.kept[e]]; }
 
+  /// Whether the data bound the strength at least as much as its prior does, by signal over noise at its upper end. An
+  /// effect that leaves no trace is not excluded by anything measured.
+  bool told_by_data(std::size_t e) const {
+    const infer::SingleFit& fit = v_.posterior.fits[e];
+    const double size = fit.amplitude.norm();
+    return size > 0 && fit.high > 0 && d_.confusion.detectability[e] / size * fit.high >= told;
+  }
+
   /// Strengths that the data exclude, for the causes they see best.
   void excluded() {
     std::vector<std::size_t> order;
     for (std::size_t e = 0; e < d_.model.effects.size(); ++e)
-      if (d_.model.effects[e].components == 1) order.push_back(e);
-    const auto seen = [&](std::size_t e) {
-      return std::max(v_.posterior.fits[e].high, 0.0) / d_.model.effects[e].scale;
-    };
+      if (d_.model.effects[e].components == 1 && told_by_data(e)) order.push_back(e);
+    const auto seen = [&](std::size_t e) { return v_.posterior.fits[e].high / d_.model.effects[e].scale; };
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seen(a) < seen(b); });
     std::string list;
     for (std::size_t k = 0; k < order.size() && k < most_of_a_kind; ++k) {

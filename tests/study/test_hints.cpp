@@ -34,6 +34,9 @@ struct Made {
     d.diagnosis.set = {0, 1};
     d.diagnosis.posterior.fits.resize(2);
     d.diagnosis.posterior.fits[0].high = 2, d.diagnosis.posterior.fits[1].high = 0.5;
+    // Their upper ends lie 4 and 2 standard deviations out.
+    for (infer::SingleFit& fit : d.diagnosis.posterior.fits) fit.amplitude = infer::Vector::Constant(1, 0.25);
+    d.confusion.detectability = {0.5, 1};
     d.confusion.distance = infer::Matrix::Constant(2, 2, 1.5);
     d.u_before = d.u_after = infer::Vector::Constant(1, parameter_off);
     d.measured.has_hold_out = true;
@@ -47,6 +50,16 @@ TEST_CASE("where nothing is wrong the hints say what the data exclude, the best 
   const Made made(infer::Verdict::none, 0.5);
   REQUIRE(made.hints().size() == 1);
   CHECK(made.hints()[0] == "These data already exclude (95 %): b.lag beyond lag = 0.5 mm, a.leak beyond gap = 2 mm.");
+}
+
+TEST_CASE("what leaves no trace, or is bounded by its prior alone, is excluded by no data") {
+  Made made(infer::Verdict::none, 0);
+  made.d.confusion.detectability = {0.5, 0.55};  // 1.1 standard deviations at the upper end of b.lag
+  REQUIRE(made.hints().size() == 1);
+  CHECK(made.hints()[0] == "These data already exclude (95 %): a.leak beyond gap = 2 mm.");
+  made.d.diagnosis.posterior.fits[0].amplitude.setZero(), made.d.diagnosis.posterior.fits[0].high = 0;
+  made.d.confusion.detectability = {0, 0.55};
+  CHECK(made.hints().empty());
 }
 
 TEST_CASE("causes that are left are told apart by repeats, or by what their authors name") {
