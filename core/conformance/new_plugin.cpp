@@ -6,18 +6,14 @@
 
 #include "base/error.hpp"
 #include "base/nearest.hpp"
+#include "base/text.hpp"
 #include "conformance/conformance.hpp"
+#include "plugin/plugin.hpp"
 
 namespace calx {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
 
 /// wet-hertz -> wet_hertz and WetHertz.
 std::string symbol_of(const std::string& name) { return replaced(name, "-", "_"); }
@@ -36,16 +32,10 @@ std::string renamed(const std::string& text, const std::string& name) {
                   name);
 }
 
-/// Where Calx is installed, or its build tree.
-fs::path prefix() {
-  std::error_code bad;
-  return fs::read_symlink("/proc/self/exe", bad).parent_path().parent_path();
-}
-
 /// In an installation and in a build tree the templates lie at the same place beside the program.
 fs::path template_folder(const std::string& kind) {
   std::error_code bad;
-  const fs::path folder = prefix() / "share" / "calx" / "template" / kind;
+  const fs::path folder = fs::path(program_prefix()) / "share" / "calx" / "template" / kind;
   if (!fs::is_directory(folder, bad))
     throw Error(Fault::files, folder.string() +
                                   ": the templates of plugins are not there; they are installed with Calx, "
@@ -121,9 +111,9 @@ std::string new_plugin_advice(const std::string& name, const std::string& kind, 
   const std::string enter = "  cd " + (fs::path(folder) / name).lexically_normal().string() + "\n";
   if (kind == kTextKind) return "\nnext:\n" + enter + "  calx plugin check .\n  calx run try.json\n";
   std::error_code bad;
-  const bool installed = fs::exists(prefix() / "lib" / "cmake" / "CalxAbi", bad);
+  const bool installed = fs::exists(fs::path(program_prefix()) / "lib" / "cmake" / "CalxAbi", bad);
   return "\nnext:\n" + enter +
-         "  cmake -S . -B build -DCMAKE_PREFIX_PATH=" + (installed ? prefix().string() : "<where Calx is installed>") +
+         "  cmake -S . -B build -DCMAKE_PREFIX_PATH=" + (installed ? program_prefix() : "<where Calx is installed>") +
          "\n  cmake --build build && ctest --test-dir build --output-on-failure\n"
          "  calx run try.json --plugin-path build/plugins\n";
 }

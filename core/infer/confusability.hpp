@@ -6,6 +6,8 @@
 
 namespace calx::infer {
 
+constexpr double least_apart = 3;  // sd; causes nearer than this cannot be told apart
+
 struct Confusability {
   std::vector<double> detectability;  // delta: amplitude over its noise after recalibration, at the fitted amplitude
   Matrix cosine;                      // between signatures in the metric of the residuals, -1..1
@@ -16,6 +18,6 @@ struct Confusability {
 /// amplitudes: per effect, at which they are compared; an effect of two components counts along its amplitude. A
 /// one-sided effect cannot imitate the opposite sign. apart: distance below which two causes are one group.
 Confusability compare_causes(const LinearModel& model, const Metric& metric, const std::vector<Vector>& amplitudes,
-                             double apart = 3);
+                             double apart = least_apart);
 
 }  // namespace calx::infer

@@ -12,7 +12,6 @@ namespace calx::infer {
 namespace {
 
 constexpr std::array<double, 3> strengths = {1, 3, 9};  // prior sd of a coefficient, in declared sd
-constexpr double enough = 3;                            // nats
 constexpr int most_terms = 3, knock_outs = 12;
 constexpr double chosen_strength = 5;
 
@@ -76,7 +75,7 @@ std::vector<UnknownTerm> find_terms(const LinearModel& model, const Bank& bank, 
   std::vector<UnknownTerm> out;
   while (out.size() < most_terms) {
     const Choice choice = best_term(candidates, bank, all, covariance, residual, taken);
-    if (choice.gain < enough) break;
+    if (choice.gain < least_term_odds) break;
     UnknownTerm found;
     found.term = choice.term, found.gain = choice.gain;
     taken.push_back(choice.term), out.push_back(found);

@@ -7,6 +7,9 @@
 
 namespace calx::infer {
 
+/// Log odds that a term outside the library needs beyond the log of the number of terms tried, nats.
+constexpr double least_term_odds = 3;
+
 struct UnknownTerm {
   std::size_t term = 0;  // in the bank
   double gain = 0;       // log odds it adds, less the log of the number of candidates

@@ -73,13 +73,17 @@ std::vector<std::string> plugin_search_path(const std::vector<std::string>& give
   return folders.list;
 }
 
+std::string program_prefix() {
+  std::error_code bad;
+  return fs::read_symlink("/proc/self/exe", bad).parent_path().parent_path().string();
+}
+
 std::vector<std::string> installed_plugin_folders() {
   FolderList folders;
-  std::error_code bad;
-  const fs::path program = fs::read_symlink("/proc/self/exe", bad);
-  if (!bad) {
-    folders.add(program.parent_path() / ".." / "plugins");
-    folders.add(program.parent_path() / ".." / "lib" / "calx" / "plugins");
+  const fs::path prefix = program_prefix();
+  if (!prefix.empty()) {
+    folders.add(prefix / "plugins");
+    folders.add(prefix / "lib" / "calx" / "plugins");
   }
   return folders.list;
 }

@@ -34,6 +34,9 @@ struct PluginManifest {
 /// Throws Error(Fault::files) for a given folder that does not exist and for a relative one in CALX_PLUGIN_PATH.
 std::vector<std::string> plugin_search_path(const std::vector<std::string>& given);
 
+/// Where Calx is installed, or its build tree: above the folder of the program. Empty where that cannot be told.
+std::string program_prefix();
+
 /// Folders that came with the program: beside it (build tree: <dir of calx>/../plugins) and <prefix>/lib/calx/plugins.
 /// Canonical, only those that exist.
 std::vector<std::string> installed_plugin_folders();

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
+#include "base/text.hpp"
 #include "base/units.hpp"
 #include "compute/device_cache.hpp"
 #include "compute/device_text.hpp"
@@ -52,12 +53,6 @@ std::string text_bytes(const std::string& text) {
   for (std::size_t k = 0; k < text.size(); ++k)
     out += (k % 32 == 0 ? "\n" : "") + std::to_string(static_cast<int>(text[k])) + ",";
   return out + "0};\n";
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
 }
 
 constexpr const char* kLaw = R"(

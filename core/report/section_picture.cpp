@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <vector>
 
 #include "report/page.hpp"
+#include "report/svg.hpp"
 #include "report/units.hpp"
 
 namespace calx {
@@ -67,12 +67,6 @@ struct Extent {
   }
 };
 
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", v);
-  return text;
-}
-
 // A scale bar of 1, 2 or 5 times a power of ten, about a quarter of the width.
 std::string scale_bar(double width_m, double pixels_per_m, double x, double y) {
   double length = std::pow(10, std::floor(std::log10(width_m / 4)));
@@ -83,9 +77,9 @@ std::string scale_bar(double width_m, double pixels_per_m, double x, double y) {
     }
   }
   const double w = length * pixels_per_m;
-  return "<path d=\"M" + number(x) + " " + number(y - 4) + "v8m0 -4h" + number(w) +
-         "m0 -4v8\" stroke=\"#444\" fill=\"none\"/>" + "<text x=\"" + number(x + w / 2) + "\" y=\"" + number(y - 7) +
-         "\" text-anchor=\"middle\">" + format_quantity(length, "m", 3) + "</text>";
+  return "<path d=\"M" + svg_number(x) + " " + svg_number(y - 4) + "v8m0 -4h" + svg_number(w) +
+         "m0 -4v8\" stroke=\"#444\" fill=\"none\"/>" + "<text x=\"" + svg_number(x + w / 2) + "\" y=\"" +
+         svg_number(y - 7) + "\" text-anchor=\"middle\">" + format_quantity(length, "m", 3) + "</text>";
 }
 
 }  // namespace
@@ -95,12 +89,8 @@ std::string speed_colour(double share) {
                                        {166, 206, 96},  {247, 192, 66}, {212, 62, 42}};
   const double at = 5 * std::min(1.0, std::max(0.0, share));
   const int k = std::min(4, static_cast<int>(at));
-  char text[8];
-  int rgb[3];
-  for (int c = 0; c < 3; ++c)
-    rgb[c] = static_cast<int>(std::lround(anchors[k][c] + (at - k) * (anchors[k + 1][c] - anchors[k][c])));
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0] & 255, rgb[1] & 255, rgb[2] & 255);
-  return text;
+  const auto mixed = [&](int c) { return anchors[k][c] + (at - k) * (anchors[k + 1][c] - anchors[k][c]); };
+  return svg_colour(mixed(0), mixed(1), mixed(2));
 }
 
 SectionPicture draw_section(const FrameSet& set, const FrameData& frame, const Vec3& gravity, double highest_speed) {
@@ -148,19 +138,21 @@ SectionPicture draw_section(const FrameSet& set, const FrameData& frame, const V
   const auto px = [&](double x) { return margin + (x - extent.x0) * scale; };
   const auto py = [&](double y) { return margin + (extent.y1 - y) * scale; };
 
-  out.svg = "<svg class=\"section-picture\" viewBox=\"0 0 " + number(width) + " " + number(height) + "\" width=\"" +
-            number(width) +
+  out.svg = "<svg class=\"section-picture\" viewBox=\"0 0 " + svg_number(width) + " " + svg_number(height) +
+            "\" width=\"" + svg_number(width) +
             "\" role=\"img\" aria-label=\"Section through the apparatus\"><g stroke=\"#20304a\" "
             "stroke-opacity=\"0.35\" stroke-width=\"0.4\">";
   for (std::size_t i : shown) {
     const Vec3 c{frame.x[i], frame.y[i], frame.z[i]};
     const double part = highest_speed > 0 ? std::sqrt(frame.speed[i] / highest_speed) : 0;
-    out.svg += "<circle cx=\"" + number(px(c[axes.right])) + "\" cy=\"" + number(py(axes.up_sign * c[axes.up])) +
-               "\" r=\"" + number(std::max(0.4, frame.radius[i] * scale)) + "\" fill=\"" + speed_colour(part) + "\"/>";
+    out.svg += "<circle cx=\"" + svg_number(px(c[axes.right])) + "\" cy=\"" +
+               svg_number(py(axes.up_sign * c[axes.up])) + "\" r=\"" +
+               svg_number(std::max(0.4, frame.radius[i] * scale)) + "\" fill=\"" + speed_colour(part) + "\"/>";
   }
   out.svg += "</g><path fill=\"none\" stroke=\"#1d2733\" stroke-width=\"1.4\" stroke-linecap=\"round\" d=\"";
   for (const Line& l : lines) {
-    out.svg += "M" + number(px(l.x1)) + " " + number(py(l.y1)) + "L" + number(px(l.x2)) + " " + number(py(l.y2));
+    out.svg += "M" + svg_number(px(l.x1)) + " " + svg_number(py(l.y1)) + "L" + svg_number(px(l.x2)) + " " +
+               svg_number(py(l.y2));
   }
   out.svg += "\"/><g font-size=\"12\" fill=\"#444\">" + scale_bar(width_m, scale, margin, height - 8) + "</g></svg>";
   out.spheres = shown.size();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "report/svg.hpp"
 #include "report/units.hpp"
 
 namespace calx {
@@ -53,17 +53,7 @@ std::string shade(double light) {
   const double outside[3] = {118, 160, 214}, inside[3] = {232, 164, 92};
   const double* colour = light >= 0 ? outside : inside;
   const double share = 0.45 + 0.55 * std::round(16 * std::min(1.0, std::fabs(light))) / 16;
-  char text[8];
-  int rgb[3];
-  for (int c = 0; c < 3; ++c) rgb[c] = static_cast<int>(std::lround(share * colour[c]));
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0] & 255, rgb[1] & 255, rgb[2] & 255);
-  return text;
-}
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", v);
-  return text;
+  return svg_colour(share * colour[0], share * colour[1], share * colour[2]);
 }
 
 }  // namespace
@@ -87,7 +77,8 @@ std::string draw_shape(const std::vector<Vec3>& vertices, const std::vector<std:
   const double width_m = std::max(seen.hi.x - seen.lo.x, 1e-12), height_m = std::max(seen.hi.y - seen.lo.y, 1e-12);
   const double scale = std::min(420 / width_m, 360 / height_m), margin = 10;
   const double width = std::max(width_m * scale, 300.0) + 2 * margin, height = height_m * scale + 2 * margin + 22;
-  std::string svg = "<svg viewBox=\"0 0 " + number(width) + " " + number(height) + "\" width=\"" + number(width) +
+  std::string svg = "<svg viewBox=\"0 0 " + svg_number(width) + " " + svg_number(height) + "\" width=\"" +
+                    svg_number(width) +
                     "\" role=\"img\" aria-label=\"The shape\"><g stroke-width=\"0.5\" stroke-linejoin=\"round\">";
   std::string colour;
   for (const Face& face : faces) {
@@ -97,13 +88,13 @@ std::string draw_shape(const std::vector<Vec3>& vertices, const std::vector<std:
       svg += (colour.empty() ? "" : "\"/>") + ("<path fill=\"" + next + "\" stroke=\"" + next) + "\" d=\"";
     colour = next;
     for (int k = 0; k < 3; ++k)
-      svg += (k == 0 ? "M" : "L") + number(margin + (face.x[k] - seen.lo.x) * scale) + " " +
-             number(margin + (seen.hi.y - face.y[k]) * scale);
+      svg += (k == 0 ? "M" : "L") + svg_number(margin + (face.x[k] - seen.lo.x) * scale) + " " +
+             svg_number(margin + (seen.hi.y - face.y[k]) * scale);
     svg += "z";
   }
   if (!colour.empty()) svg += "\"/>";
   const Vec3 size = box.hi - box.lo;
-  svg += "</g><text x=\"" + number(margin) + "\" y=\"" + number(height - 6) +
+  svg += "</g><text x=\"" + svg_number(margin) + "\" y=\"" + svg_number(height - 6) +
          "\" font-size=\"12\" fill=\"#444\">x, y, z: " + format_quantity(size.x, "m", 3) + ", " +
          format_quantity(size.y, "m", 3) + ", " + format_quantity(size.z, "m", 3) + "</text></svg>";
   return svg;

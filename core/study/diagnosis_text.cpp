@@ -132,6 +132,24 @@ class DiagnosisText {
     return hash.finish();
   }
 
+  static constexpr double normal_95 = 1.645;
+
+  /// An amplitude and the ends of its interval in the unit of the parameter, inside its range.
+  static Json strength(const Candidate& c, const Vector& amplitude, double low, double high, double sd) {
+    if (c.effect.one_sided || c.effect.components == 2) low = std::max(low, 0.0);
+    low = c.off + c.orientation * low, high = c.off + c.orientation * high;
+    if (low > high) std::swap(low, high);
+    low = std::clamp(low, c.lowest, c.highest), high = std::clamp(high, c.lowest, c.highest);
+    return {{"name", c.parameter},
+            {"unit", c.unit},
+            {"value", c.value(amplitude)},
+            {"low", low},
+            {"high", high},
+            {"sd", sd},
+            {"off", c.off},
+            {"range", {c.lowest, c.highest}}};
+  }
+
   /// Strength of a cause with its 90 % interval, in the unit of its parameter.
   Json parameters(std::size_t e) const {
     const Candidate& c = candidate(e);
@@ -143,24 +161,11 @@ class DiagnosisText {
       amplitude = d_.amplitudes[k];
       // Beside another effect, or fitted by runs: as wide as alone, or as the runs say where that is wider.
       if (k < d_.amplitude_sd.size()) sd = std::max(sd, d_.amplitude_sd[k]);
-      constexpr double normal_95 = 1.645;
       const double size = amplitude.size() == 1 ? amplitude[0] : amplitude.norm();
       low = size - normal_95 * sd, high = size + normal_95 * sd;
     }
-    const infer::Effect& effect = d_.model.effects[e];
-    if (effect.one_sided || effect.components == 2) low = std::max(low, 0.0);
-    low = c.off + c.orientation * low, high = c.off + c.orientation * high;
-    if (low > high) std::swap(low, high);
-    low = std::clamp(low, c.lowest, c.highest), high = std::clamp(high, c.lowest, c.highest);
     Json out = Json::array();
-    out.push_back({{"name", c.parameter},
-                   {"unit", c.unit},
-                   {"value", c.value(amplitude)},
-                   {"low", low},
-                   {"high", high},
-                   {"sd", sd},
-                   {"off", c.off},
-                   {"range", {c.lowest, c.highest}}});
+    out.push_back(strength(c, amplitude, low, high, sd));
     if (!c.direction.empty()) {
       const double angle = c.info.parameter(c.direction)->off + c.angle(amplitude);
       out.push_back({{"name", c.direction}, {"unit", "deg"}, {"value", angle}});
@@ -291,18 +296,6 @@ class DiagnosisText {
     return out;
   }
 
-  Json strength_of(const Candidate& c, const Vector& amplitude, double sd) const {
-    constexpr double normal_95 = 1.645;
-    const double size = amplitude[0];
-    return {{"name", c.parameter},
-            {"unit", c.unit},
-            {"value", c.value(amplitude)},
-            {"low", std::clamp(size - normal_95 * sd, c.lowest, c.highest)},
-            {"high", std::clamp(size + normal_95 * sd, c.lowest, c.highest)},
-            {"off", c.off},
-            {"range", {c.lowest, c.highest}}};
-  }
-
   /// What fits best where nothing of the library does; no name of a cause.
   Json generic_term() const {
     const GenericFit& g = d_.generic;
@@ -318,7 +311,9 @@ class DiagnosisText {
             {"kind", "generic term, no named cause"},
             {"accepted", g.accepted},
             {"reason", g.reason},
-            {"parameters", {strength_of(best, g.amplitude, g.amplitude_sd)}},
+            {"parameters",
+             {strength(best, g.amplitude, g.amplitude[0] - normal_95 * g.amplitude_sd,
+                       g.amplitude[0] + normal_95 * g.amplitude_sd, g.amplitude_sd)}},
             {"fit_p", g.fit_p},
             {"held_out_log_score", g.gain},
             {"confirmation", confirmation(g.confirmation)},
@@ -331,7 +326,7 @@ class DiagnosisText {
     const Candidate& best = d_.library.candidates[g.tried[0].candidate];
     if (!g.accepted) return " No generic term describes it: " + g.reason + ".";
     return " A generic term describes it, which is no named cause: " + best.info.id + ", " + best.parameter + " = " +
-           format_number(best.value(g.amplitude)) + ".";
+           brief_quantity(best.value(g.amplitude), "1") + ".";
   }
 
   Json gain() const {

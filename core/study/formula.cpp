@@ -1,6 +1,8 @@
 #include "study/formula.hpp"
 
 #include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <map>
 
 #include "base/nearest.hpp"
@@ -40,7 +42,9 @@ class Translator {
   static constexpr int deepest = 60;
 
   [[noreturn]] void refuse(const std::string& what) const {
-    node_.fail("\"" + text_ + "\" at character " + std::to_string(at_ + 1) + ": " + what);
+    constexpr std::size_t shown = 80;
+    node_.fail("\"" + (text_.size() > shown ? text_.substr(0, shown) + "..." : text_) + "\" at character " +
+               std::to_string(at_ + 1) + ": " + what);
   }
   char peek() {
     while (at_ < text_.size() && text_[at_] == ' ') ++at_;
@@ -51,8 +55,12 @@ class Translator {
     ++at_;
   }
 
+  void deeper() {
+    if (++depth_ > deepest) refuse("too many parentheses or signs in each other; at most " + std::to_string(deepest));
+  }
+
   std::string sum() {
-    if (++depth_ > deepest) refuse("too many parentheses in each other; at most " + std::to_string(deepest));
+    deeper();
     std::string out = product();
     while (peek() == '+' || peek() == '-') {
       const char sign = text_[at_++];
@@ -75,7 +83,10 @@ class Translator {
     const char c = peek();
     if (c == '-') {
       ++at_;
-      return "(R(0.0) - " + factor() + ")";
+      deeper();
+      const std::string inner = factor();
+      --depth_;
+      return "(R(0.0) - " + inner + ")";
     }
     if (c == '(') {
       ++at_;
@@ -113,6 +124,8 @@ class Translator {
       if (digits() == 0) refuse("the exponent of a number has digits");
       exponent = text_.substr(from, at_ - from);
     }
+    if (!std::isfinite(std::strtod(text_.substr(start, at_ - start).c_str(), nullptr)))
+      refuse("a number is below 1e308");
     return "R(" + whole + fraction + exponent + ")";
   }
 

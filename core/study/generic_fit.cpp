@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "infer/denoise.hpp"
+#include "infer/unknown_term.hpp"
 #include "study/confirm.hpp"
 #include "study/generic_terms.hpp"
 
@@ -14,10 +15,6 @@ namespace {
 
 using infer::Matrix;
 using infer::Vector;
-
-/// Log odds that the best term needs beyond the log of the number of terms tried, as shapes of an observable need them
-/// (core/infer/unknown_term.cpp).
-constexpr double least_odds = 3;
 
 class GenericTrial {
  public:
@@ -33,6 +30,7 @@ class GenericTrial {
     own.kept.clear(), own.model.effects.clear(), own.model.signatures.clear(), own.model.signature_variance.clear();
     const std::vector<std::size_t> library = simulator_.effects;
     simulator_.effects = terms;
+    simulator_.stage_of_effects = "signatures of the generic terms";
     add_signatures(own, terms);
     simulator_.effects = own.kept;
     if (!own.kept.empty()) {
@@ -122,7 +120,7 @@ class GenericTrial {
     own.diagnosis.after = infer::check_fit(own.model, own.bank, all.covariance - budget.both.noise + free,
                                            budget.both.noise, all.residual, d_.options, 2);
     out.fit_p = own.diagnosis.after.p;
-    const double needed = least_odds + std::log(static_cast<double>(fits.size()));
+    const double needed = infer::least_term_odds + std::log(static_cast<double>(fits.size()));
     if (out.tried[0].log_odds < needed)
       out.reason = "the likeliest of " + std::to_string(fits.size()) + " generic terms has log odds of " +
                    rounded(out.tried[0].log_odds) + "; " + rounded(needed) + " are needed";

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/nearest.hpp"
+#include "base/text.hpp"
 #include "config/effects.hpp"
 #include "io/io.hpp"
 #include "study/formula.hpp"
@@ -17,6 +18,16 @@ namespace fs = std::filesystem;
 /// Amplitudes beyond so many scales are held to be impossible.
 constexpr double highest_in_scales = 40;
 
+/// What formulas of contacts may use.
+constexpr const char* contact_inputs = R"(  const real load = calx_max(c->fn_before, R(0.0));
+  const real vn = c->vx * c->nx + c->vy * c->ny + c->vz * c->nz;
+  const real vt2 = c->vx * c->vx + c->vy * c->vy + c->vz * c->vz - vn * vn;
+  const real speed = calx_sqrt(calx_max(vt2, R(0.0)));
+  const real radius = R(@RADII@) * c->r_eff;
+  const real stress = load / (R(3.141592653589793) * radius * radius);
+  const real time = c->time;
+)";
+
 constexpr const char* friction_text = R"(#define @S@_state_LIST(X)                                         \
   X(spring_x, "m", -1, 1, 0, CALX_FIELD_ODD | CALX_VEC(1), "tangential spring, x") \
   X(spring_y, "m", -1, 1, 0, CALX_FIELD_ODD | CALX_VEC(1), "tangential spring, y") \
@@ -28,14 +39,7 @@ CALX_LAW_DECLARE(@S@)
 
 CALX_LAW_EVAL(@S@) {
   CALX_ID(calx_spring) spring;
-  const real load = calx_max(c->fn_before, R(0.0));
-  const real vn = c->vx * c->nx + c->vy * c->ny + c->vz * c->nz;
-  const real vt2 = c->vx * c->vx + c->vy * c->vy + c->vz * c->vz - vn * vn;
-  const real speed = calx_sqrt(calx_max(vt2, R(0.0)));
-  const real radius = R(@RADII@) * c->r_eff;
-  const real stress = load / (R(3.141592653589793) * radius * radius);
-  const real time = c->time;
-  const real more = calx_max(p->amount * (@FORMULA@), R(0.0));
+@INPUTS@  const real more = calx_max(p->amount * (@FORMULA@), R(0.0));
   const real limit = load * more;
   /* The spring slips after a hundredth of the radius, whatever the load: no stiffness of the laws before is known. */
   const real kt = limit / (R(0.01) * radius);
@@ -61,14 +65,7 @@ constexpr const char* pull_text = R"(#define @S@_state_LIST(X)
 CALX_LAW_DECLARE(@S@)
 
 CALX_LAW_EVAL(@S@) {
-  const real load = calx_max(c->fn_before, R(0.0));
-  const real vn = c->vx * c->nx + c->vy * c->ny + c->vz * c->nz;
-  const real vt2 = c->vx * c->vx + c->vy * c->vy + c->vz * c->vz - vn * vn;
-  const real speed = calx_sqrt(calx_max(vt2, R(0.0)));
-  const real radius = R(@RADII@) * c->r_eff;
-  const real stress = load / (R(3.141592653589793) * radius * radius);
-  const real time = c->time;
-  const real pull = R(9.81) * c->m_eff * calx_max(p->amount * (@FORMULA@), R(0.0));
+@INPUTS@  const real pull = R(9.81) * c->m_eff * calx_max(p->amount * (@FORMULA@), R(0.0));
   out->fx = -pull * c->nx;
   out->fy = -pull * c->ny;
   out->fz = -pull * c->nz;
@@ -94,12 +91,6 @@ CALX_FORCE_EVAL(@S@) {
 
 bool begins_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
-
 std::string symbol_of(const GenericTerm& term) {
   std::string out = "generic_" + term.name;
   std::replace(out.begin(), out.end(), '-', '_');
@@ -111,6 +102,10 @@ const GenericTarget& target_of(const std::string& name) {
   return *std::find_if(all.begin(), all.end(), [&](const GenericTarget& t) { return t.name == name; });
 }
 
+std::string amount_words(const GenericTerm& term) {
+  return target_of(term.target).doc + " is amount" + (term.formula == "1" ? "" : " * (" + term.formula + ")");
+}
+
 std::string law_text(const GenericTerm& term) {
   const GenericTarget& target = target_of(term.target);
   const bool is_drag = target.name == "drag", on_wall = begins_with(target.name, "wall");
@@ -119,6 +114,7 @@ std::string law_text(const GenericTerm& term) {
       (is_drag ? "row" : "pair") + "_LIST(X) X(amount, \"1\", 0, 1e12, 0, 0, \"factor of the formula\")\n";
   if (!is_drag) out += "#define @S@_prop_LIST(X)\n";
   out += is_drag ? drag_text : target.name.find("friction") != std::string::npos ? friction_text : pull_text;
+  out = replaced(out, "@INPUTS@", contact_inputs);
   // Of equal grains the reduced radius is half of one; of a grain on a wall it is the whole.
   out = replaced(out, "@RADII@", on_wall ? "1.0" : "2.0");
   return replaced(replaced(out, "@S@", symbol_of(term)), "@FORMULA@", term.dialect);
@@ -146,14 +142,14 @@ std::string manifest_text(const GenericTerm& term) {
                           {"scale", term.scale},
                           {"sign", "positive"},
                           {"range", {0, highest_in_scales * term.scale}},
-                          {"doc", target.doc + " is amount * (" + term.formula + "), " + target.unit}}}},
+                          {"doc", amount_words(term) + ", " + target.unit}}}},
                        {"roles", roles},
                        {"touches", effect_observables()},
                        {"rivals", Json::array()},
                        {"edits", {edit}}};
   Json plugin = {{"id", term.id()},
                  {"kind", is_drag ? "calx.particle-force/1" : "calx.contact-law/1"},
-                 {"summary", "Generic term, no named cause: " + target.doc + " is amount * (" + term.formula + ")."},
+                 {"summary", "Generic term, no named cause: " + amount_words(term) + "."},
                  {"text", symbol_of(term) + ".law.h"},
                  {"effect", effect}};
   const Json out = {{"calx_plugin", 1},         {"abi", {{"major", 1}, {"minor", 0}}},
@@ -222,7 +218,7 @@ std::vector<GenericTerm> read_generic_terms(const Study& study) {
   std::vector<std::string> known;
   for (const GenericTerm& t : usual_generic_terms()) known.push_back(t.name);
   std::vector<GenericTerm> out;
-  for (const Node& item : node.items("true, or a list of generic terms")) {
+  for (const Node& item : node.items("generic terms, or true")) {
     GenericTerm term;
     if (item.json().is_string())
       term =

@@ -12,10 +12,10 @@ namespace {
 using infer::Verdict;
 
 constexpr std::size_t most_of_a_kind = 3;
-/// Causes nearer than this are one group (core/infer/confusability.hpp); the distance grows as the root of the repeats.
-constexpr double apart = 3;
 constexpr double most_repeats = 20;  // more of the same is no plan
 constexpr double off_below = 0.05;
+/// Standard deviations of the data at the 95 % end of a strength that data and prior bound alike: 1.645 / sqrt(2).
+constexpr double told = 1.16;
 
 class Hints {
  public:
@@ -37,14 +37,20 @@ class Hints {
  private:
   const Candidate& candidate(std::size_t e) const { return d_.library.candidates[d_.kept[e]]; }
 
+  /// Whether the data bound the strength at least as much as its prior does, by signal over noise at its upper end. An
+  /// effect that leaves no trace is not excluded by anything measured.
+  bool told_by_data(std::size_t e) const {
+    const infer::SingleFit& fit = v_.posterior.fits[e];
+    const double size = fit.amplitude.norm();
+    return size > 0 && fit.high > 0 && d_.confusion.detectability[e] / size * fit.high >= told;
+  }
+
   /// Strengths that the data exclude, for the causes they see best.
   void excluded() {
     std::vector<std::size_t> order;
     for (std::size_t e = 0; e < d_.model.effects.size(); ++e)
-      if (d_.model.effects[e].components == 1) order.push_back(e);
-    const auto seen = [&](std::size_t e) {
-      return std::max(v_.posterior.fits[e].high, 0.0) / d_.model.effects[e].scale;
-    };
+      if (d_.model.effects[e].components == 1 && told_by_data(e)) order.push_back(e);
+    const auto seen = [&](std::size_t e) { return v_.posterior.fits[e].high / d_.model.effects[e].scale; };
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return seen(a) < seen(b); });
     std::string list;
     for (std::size_t k = 0; k < order.size() && k < most_of_a_kind; ++k) {
@@ -64,8 +70,9 @@ class Hints {
         if (i >= d_.model.effects.size() || k >= d_.model.effects.size()) continue;
         const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
         const double distance = d_.confusion.distance(row, column);
-        if (!(distance > 0) || distance >= apart) continue;
-        const double times = std::ceil(std::pow(apart / distance, 2));
+        if (!(distance > 0) || distance >= infer::least_apart) continue;
+        // The distance grows as the root of the repeats.
+        const double times = std::ceil(std::pow(infer::least_apart / distance, 2));
         const std::string pair = d_.model.effects[i].id + " and " + d_.model.effects[k].id;
         out_.push_back(times <= most_repeats
                            ? pair + " are " + rounded(distance) + " standard errors apart; " + format_number(times) +

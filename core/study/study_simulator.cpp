@@ -164,7 +164,7 @@ Matrix StudySimulator::run(const std::vector<infer::RunPoint>& points) {
     if (p.effect >= 0) settings.back().doses.emplace_back(effects[static_cast<std::size_t>(p.effect)], p.amplitude);
   }
   const auto has_effect = [](const infer::RunPoint& p) { return p.effect >= 0; };
-  ledger_.stage = std::all_of(points.begin(), points.end(), has_effect)   ? "leading effects at their fitted strength"
+  ledger_.stage = std::all_of(points.begin(), points.end(), has_effect)   ? stage_of_effects
                   : std::any_of(points.begin(), points.end(), has_effect) ? "signatures of the effects"
                                                                           : "base and sensitivities";
   Matrix out = Matrix::Constant(rows_, static_cast<Eigen::Index>(points.size()), std::nan(""));

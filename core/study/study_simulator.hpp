@@ -59,6 +59,8 @@ class StudySimulator : public infer::Simulator {
   std::vector<double> values(const infer::Vector& u) const;
 
   std::vector<std::size_t> effects;  // candidate behind each effect of a RunPoint
+  /// Of runs with effects alone, for the ledger.
+  std::string stage_of_effects = "leading effects at their fitted strength";
   const std::map<std::size_t, std::string>& failures() const { return failures_; }  // by candidate
 
  private:

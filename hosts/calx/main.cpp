@@ -145,9 +145,8 @@ int guarded(CLI::App& app, const bool& json, int argc, char** argv) {
 /// Where the documents lie, for the end of calx --help.
 std::string documents() {
   std::error_code bad;
-  const auto prefix = std::filesystem::read_symlink("/proc/self/exe", bad).parent_path().parent_path();
-  const auto installed = prefix / "share" / "doc" / "calx";
-  if (std::filesystem::is_directory(installed, bad)) return "Documents: " + installed.string();
+  const std::string installed = calx::program_prefix() + "/share/doc/calx";
+  if (std::filesystem::is_directory(installed, bad)) return "Documents: " + installed;
   return "Documents: README.md, docs and abi/README.md of the source tree";
 }
 

@@ -41,12 +41,18 @@ void check(const CheckFlags& flags) {
                 flags.path + ": " + std::to_string(failed) + (failed == 1 ? " check" : " checks") + " failed");
 }
 
-/// The manifest of an id, where path is none that exists.
+/// The manifest of an id, where path is none that exists. Throws Error(Fault::files).
 std::string manifest_of(const std::string& path, const std::vector<std::string>& search) {
   if (std::filesystem::exists(path)) return path;
-  for (const PluginManifest& manifest : discover_plugins(plugin_search_path(search)))
+  std::vector<std::string> known;
+  for (const PluginManifest& manifest : discover_plugins(plugin_search_path(search))) {
     if (manifest.id == path) return manifest.path;
-  return path;
+    known.push_back(manifest.id);
+  }
+  const std::string near = nearest_name(path, known);
+  throw Error(Fault::files, path + ": no such file, and no plugin found is called so; " +
+                                (near.empty() ? "give a manifest NAME.plugin.json, its library, a folder, or an id"
+                                              : "did you mean \"" + near + "\"?"));
 }
 
 }  // namespace

@@ -115,6 +115,15 @@ class BadPlugin(CalxTest):
         self.assertRegex(self.calx("run", path.name).err, r"no plugin test\.force")
         self.runs(path.name, "--plugin-path", "mine")
         self.assertIn("test.force", [p["id"] for p in self.summary()["provenance"]["plugins"]])
+        # The folder above was named, as a newcomer does.
+        (self.dir / "project" / "build").mkdir(parents=True)
+        (self.dir / "mine").rename(self.dir / "project" / "build" / "plugins")
+        for near in ("project", "project/build"):
+            line = self.fails(PLUGIN, r"/forces/0: no plugin test\.force", result=self.calx("run", path.name, "--plugin-path", near))
+            self.assertRegex(line, r"project/build/plugins holds it: --plugin-path \S+project/build/plugins$")
+        doctor = self.calx("plugin", "doctor", "test.force", "--plugin-path", "project/build/plugins")
+        self.assertIn("Nothing is wrong with it", doctor.out)
+        self.fails(6, r'calx\.bxo: no such file, .* did you mean "calx\.box"\?', result=self.calx("plugin", "doctor", "calx.bxo"))
         self.fails(6, 'plugin folder "yours" does not exist', result=self.calx("run", path.name, "--plugin-path", "yours"))
 
 

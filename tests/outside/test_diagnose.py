@@ -202,8 +202,54 @@ class Diagnose(CalxTest):
         self.assertLessEqual(found["runs"]["used"], 60)
         self.assertNotEqual(found["claims"][0]["verdict"], "untested")
         self.assertIn("Nothing is shown to be wrong", result.out)
+        self.assertRegex(found["hints"][0], r"^These data already exclude \(95 %\): .*acme\.wide-slot beyond widening = ")
+        self.assertIn("hint: " + found["hints"][0], result.out)
         self.assertIsNone(found["extension"])
         self.assertFalse((self.dir / "study.out" / "extension").exists())
+
+    def test_a_scanned_surface_is_compared_with_the_height_map(self):
+        case = copy.deepcopy(DRAIN)
+        case["sensors"].append({"name": "surface", "kind": "height-map", "region": "hopper", "cell": 0.004, "every": 0.05})
+        self.write(case, "drain.json")
+        noise = random.Random(3)
+        for number, name in enumerate(("fit", "hold")):
+            lines = ["scan,x_mm,y_mm,z_mm"]
+            for scan in range(4):
+                sets = {"/seed": 5000 + 100 * number + scan, "/time/end": 0.3,
+                        "/effects": [{"effect": "acme.wide-slot", "on": {"floor": "floor"}, "parameters": {"widening": 0.007}}]}
+                self.runs("drain.json", "-o", "world", "--overwrite", "--plugin-path", "acme",
+                          *(w for k, v in sets.items() for w in ("--set", f"{k}={json.dumps(v)}")))
+                field = json.loads((self.dir / "world" / "fields.json").read_text())["fields"][0]
+                for k, z in enumerate(field["values"]):
+                    if z is None:
+                        continue
+                    x, y = (field["origin"][0] + (k % field["nx"] + 0.5) * field["cell"],
+                            field["origin"][1] + (k // field["nx"] + 0.5) * field["cell"])
+                    if x < 0.024:  # on the floor
+                        lines.append(f"{scan},{1e3 * x:.3f},{1e3 * y:.3f},{1e3 * z + noise.gauss(0, 0.1):.4f}")
+            (self.dir / f"{name}.csv").write_text("\n".join(lines) + "\n")
+        scans = [{"name": name, "kind": "pile-profile", "case": "drain", "sensor": "surface", "field": "height", "unit": "mm",
+                  "use": use, "measured": {"file": file, "x": "x_mm", "y": "y_mm", "z": "z_mm", "repeat": "scan"}}
+                 for name, file, use in (("scan", "fit.csv", "fit"), ("scan again", "hold.csv", "hold-out"))]
+        study = {**copy.deepcopy(STUDY), "observables": scans, "effects": STUDY["effects"][:1], "cases": {"drain": {
+            "case": "drain.json", "set": {"/time/end": 0.3}}}}
+        manifest = json.loads((self.dir / "acme" / "wide_slot.plugin.json").read_text())
+        manifest["plugins"][0]["effect"]["touches"].append("pile-profile")
+        (self.dir / "acme" / "wide_slot.plugin.json").write_text(json.dumps(manifest))
+        found, _ = self.diagnose(study=study)
+        seen = found["observables"][0]
+        self.assertEqual((seen["kind"], len(seen["fit"])), ("pile-profile", 6))
+        # Too much stays where the slot is too narrow: the mean height of the simulation, the first mode, is too high.
+        self.assertGreater(seen["before"][0], seen["fit"][0])
+        self.assertGreater(seen["z"], 3)
+        self.assertEqual(found["causes"][0]["id"], "acme.wide-slot", found["sentence"])
+        self.assertGreater(found["causes"][0]["probability"], 0.9)
+        # What the scan holds beyond the map is refused, with the place, and nothing is lost.
+        text = (self.dir / "fit.csv").read_text()
+        (self.dir / "fit.csv").write_text(text + "0,400,8,3\n")
+        self.write(study, "study.json")
+        self.fails(CASE, r'observable "scan": the scanned point \(0\.4, 0\.008\) m lies outside of the map of sensor "surface"',
+                   result=self.calx("diagnose", "study.json", "--plugin-path", "acme"))
 
     def test_a_small_budget_names_nothing_that_an_untried_cause_may_do(self):
         self.measure(0.004)

@@ -99,6 +99,19 @@ TEST_CASE("a count is delivered exactly, with the velocity asked for and turned 
   CHECK(norm(mean) < 0.35);  // 77 random directions: 0.11 expected
 }
 
+TEST_CASE("a count of drawn sizes has asked for what it delivered once it is exhausted") {
+  Simulation sim(with_source(R"({"name": "a", "shape": "ball", "material": "sand", "count": 50,
+    "size": {"distribution": "uniform", "lowest": 0.5, "highest": 1.5},
+    "region": {"box": {"min": [0, 0, 0], "max": [0.03, 0.03, 0.03]}}})")
+                     .file(),
+                 test_options());
+  sim.step();
+  CHECK(sim.world().particles().count() == 50);
+  CHECK(sim.world().mass().requested == sim.world().mass().delivered);
+  // Drawn sizes are not the mean size 50 times.
+  CHECK(std::fabs(sim.world().mass().delivered / (50 * 2000 * sim.world().particles().shapes[0].volume) - 1) > 0.01);
+}
+
 TEST_CASE("a rate source delivers the rate, then stops at the mass asked for") {
   // 0.2 kg/s for 0.05 s of a thinning rain that falls out of its region.
   CaseText c = with_source(

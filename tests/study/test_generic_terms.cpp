@@ -63,7 +63,10 @@ TEST_CASE("a formula that is none is refused with its place") {
   CHECK(says(refusal("min(speed)"), "\",\" is missing"));
   CHECK(says(refusal("speed; c"), "\";\" is not expected"));
   CHECK(says(refusal("1e"), "exponent"));
+  CHECK(says(refusal("2 + 1e999"), "a number is below 1e308"));
   CHECK(says(refusal(std::string(100, '(')), "too many parentheses"));
+  CHECK(says(refusal(std::string(2000000, '-')), "too many parentheses or signs"));
+  CHECK(refusal(std::string(2000000, '-')).size() < 300);
   CHECK(says(refusal("speed->x"), "\">\" is not known"));
 }
 
@@ -79,6 +82,7 @@ TEST_CASE("a study asks for all generic terms, some, or its own") {
   CHECK(terms[0].id() == "generic.drag");
   CHECK(terms[1].dialect == "speed");
   CHECK(terms[1].scale == 0.3);
+  CHECK(says(refused_terms("7"), "study.json /generic_terms: 7; must be a list of generic terms, or true"));
   CHECK(says(refused_terms(R"(["darg"])"), "study.json /generic_terms/0"));
   CHECK(says(refused_terms(R"(["darg"])"), "did you mean \"drag\"?"));
   CHECK(says(refused_terms(R"(["drag", "drag"])"), "/generic_terms/1: generic term \"drag\" stands twice"));

@@ -77,16 +77,29 @@ class GenericTerm(unittest.TestCase):
         self.assertLess(g["confirmation"]["error_after"], 0.6 * g["confirmation"]["error_before"])
         self.assertFalse(any(c["named"] for c in d["causes"]))
         self.assertLessEqual(d["runs"]["used"], d["runs"]["planned"])
+        # The true cause is not in this study's library, and the hints say so.
+        self.assertTrue(any("leaves out" in h and "calx.moisture-cohesion" in h for h in d["hints"]), d["hints"])
         out = self.dir / "moist" / "study.out"
         self.assertEqual(d["extension"], "extension/hopper.json")
         self.assertIn("generic.grain-pull", run("check", out / d["extension"]))
         page = (out / "report.html").read_text()
         self.assertIn("A generic term, which is no named cause", page)
 
+    def test_a_fault_of_the_scale_that_looks_like_slow_flow_is_not_named(self):
+        # A step of the scale that is not in the library: a pull between grains may describe it, as less flows; no cause is named.
+        d = self.diagnosed("late", [], lambda t: 1.5 if t > 0.4 else 0, TERMS)
+        self.assertEqual(d["verdict"], "unknown")
+        self.assertFalse(any(c["named"] for c in d["causes"]))
+        self.assertIn("no named cause", d["generic_term"]["kind"])
+
     def test_a_loss_that_no_pull_or_drag_makes_is_described_by_none(self):
         d = self.diagnosed("scale", [], lambda t: -1.5 if t > 0.4 else 0, TERMS)
         self.assertEqual(d["verdict"], "unknown")
         self.assertFalse(d["generic_term"]["accepted"], d["generic_term"])
+        # Refused before runs are spent on its confirmation.
+        self.assertIn("does not fit the data", d["generic_term"]["reason"])
+        self.assertIsNone(d["generic_term"]["confirmation"])
+        self.assertFalse(any("generic_terms" in h for h in d["hints"]), d["hints"])
         self.assertIsNone(d["extension"])
         self.assertFalse((self.dir / "scale" / "study.out" / "extension").exists())
 
