@@ -68,7 +68,7 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
     if (d.after.p < options.fit_above) {
       d.verdict = Verdict::unknown;
       d.reason = "the best cause does not fit the data";
-      d.named.clear();
+      d.refused.swap(d.named);
     } else if (d.gain.log_score < options.gain_above) {
       d.verdict = Verdict::ambiguous;
       d.reason = "the best cause does not predict the held-out data";

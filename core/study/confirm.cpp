@@ -59,7 +59,7 @@ class FitByRuns {
   RealFit go(int rounds) {
     Vector x = flat(model_);
     Vector figures = run(model_);
-    RealFit best{model_, {}};
+    RealFit best{model_, {}, figures};
     double least = misfit(x, figures);
     Matrix secants = secants_;
     for (int round = 0; round < rounds; ++round) {
@@ -79,7 +79,7 @@ class FitByRuns {
       x = to, figures = next;
       const double now = misfit(x, figures);
       if (now >= least) continue;
-      least = now, best.model = unflat(x), secants = secants_;
+      least = now, best.model = unflat(x), best.figures = figures, secants = secants_;
     }
     const Matrix w = metric_->whiten(secants);
     Matrix precision = w.transpose() * w;
@@ -178,6 +178,16 @@ std::vector<double> list_of(const Vector& v) { return {v.data(), v.data() + v.si
 
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds) {
   return FitByRuns(d, simulator, start, seeds).go(rounds);
+}
+
+infer::FitCheck check_runs(const StudyDiagnosis& d, const Vector& figures, const std::vector<infer::Part>& parts,
+                           std::size_t seeds) {
+  const infer::LinearModel& m = d.model;
+  const infer::View& view = d.diagnosis.budget.both;
+  const infer::Freedom freedom = infer::freedom_of(m, parts, d.options);
+  const Matrix systematic = error_of_means(d, seeds) + m.sensitivities * m.sensitivities.transpose() +
+                            freedom.columns * freedom.columns.transpose() + freedom.own;
+  return infer::check_fit(m, d.bank, systematic, view.noise, view.y - figures, d.options, 2);
 }
 
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,

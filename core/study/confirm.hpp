@@ -18,12 +18,18 @@ struct RealModel {
 struct RealFit {
   RealModel model;
   std::vector<double> sd;  // of each strength, along its direction
+  infer::Vector figures = {};  // mean of the runs there
 };
 
 /// Gauss-Newton steps from `start` towards the fitted campaign, every step by the mean of runs with the same seeds and
 /// with secants corrected by what the runs gave (Broyden 1965); the best place of all is kept. Steps end where a
 /// parameter would leave its range. Throws what StudySimulator::run_settings throws for the start.
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds);
+
+/// What the means of so many runs leave of both campaigns: the fit test with these runs as the base, free in what small
+/// changes of parameters and of the strengths of `parts` do.
+infer::FitCheck check_runs(const StudyDiagnosis& d, const infer::Vector& figures, const std::vector<infer::Part>& parts,
+                           std::size_t seeds);
 
 /// Means of runs of both models with new seeds, scored on the held-out campaign.
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,

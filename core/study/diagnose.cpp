@@ -57,6 +57,7 @@ class Diagnoser {
     if (d_.library.runs_for_all > 0)
       d_.notes.push_back("the budget leaves causes out; " + std::to_string(d_.library.runs_for_all) +
                          " runs would try all of them");
+    if (!d_.diagnosis.refused.empty()) reconsider();
     if (d_.diagnosis.verdict == infer::Verdict::named) check_name();
     if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
     if (d_.diagnosis.verdict == infer::Verdict::unknown) describe_unknown();
@@ -133,7 +134,9 @@ class Diagnoser {
         plan_.round_runs + static_cast<std::size_t>((rivals - leaders) * plan_.leading) * plan_.cases;
     for (int look = 0; look < most_looks && plan_.rounds > 0 && !d_.model.effects.empty(); ++look) {
       if (!pays_for(cost + plan_.confirmation_runs(0))) return;
-      if (infer::diagnose(d_.model, d_.bank, d_.options).verdict == infer::Verdict::named) return;
+      const infer::Diagnosis now = infer::diagnose(d_.model, d_.bank, d_.options);
+      // What the fit test refuses is fitted by runs instead.
+      if (now.verdict == infer::Verdict::named || !now.refused.empty()) return;
       const infer::Budget budget = infer::error_budget(d_.model, d_.options);
       const infer::Posterior posterior = single_causes(budget);
       const std::size_t leader = leader_of(posterior);
@@ -242,8 +245,9 @@ class Diagnoser {
   /// Strengths of what was named, and the nuisance parameters without and with it, from all data.
   void find_amplitudes() {
     const infer::Diagnosis& v = d_.diagnosis;
-    d_.explained = v.named;
-    for (std::size_t e = 0; e < v.posterior.inclusion.size() && v.named.empty(); ++e)
+    d_.explained = v.named.empty() ? v.refused : v.named;
+    const bool open = d_.explained.empty();
+    for (std::size_t e = 0; e < v.posterior.inclusion.size() && open; ++e)
       if (v.posterior.inclusion[e] > 0.5 && d_.explained.size() < 2) d_.explained.push_back(e);
     d_.amplitudes.clear();
     for (const infer::Part& part : infer::parts_of(v.posterior, d_.explained)) d_.amplitudes.push_back(part.amplitude);
@@ -274,6 +278,31 @@ class Diagnoser {
     for (const infer::UnknownTerm& t : d_.terms) {
       d_.after += infer::columns_of(d_.bank.terms[t.term], m.observables) * t.coefficients;
     }
+  }
+
+  /// The fit test may have refused no more than the linear model of a strong effect: the extended case is fitted by runs,
+  /// and the test asks again what those runs leave of the data.
+  void reconsider() {
+    keep_to_plan();
+    infer::Diagnosis& v = d_.diagnosis;
+    if (plan_.steps == 0 || v.gain.log_score < d_.options.gain_above) return;
+    d_.ledger.stage = "extended case fitted by runs";
+    RealFit fit;
+    try {
+      fit = fit_by_runs(d_, *simulator_, {d_.u_after, d_.explained, d_.amplitudes}, plan_.steps, plan_.step_seeds);
+    } catch (const Error& e) {
+      if (e.fault() != Fault::numerics && e.fault() != Fault::settings) throw;
+      return;
+    }
+    std::vector<infer::Part> parts = infer::parts_of(v.posterior, d_.explained);
+    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].amplitude = fit.model.amplitudes[k];
+    const infer::FitCheck check = check_runs(d_, fit.figures, parts, static_cast<std::size_t>(plan_.step_seeds));
+    if (check.p < d_.options.fit_above) return;
+    v.after = check;
+    v.named.swap(v.refused);
+    v.verdict = infer::Verdict::named;
+    v.reason = "probable, fits when it is run, and predicts the held-out data";
+    d_.u_after = fit.model.u, d_.amplitudes = fit.model.amplitudes;
   }
 
   /// A strength out of range, or a cause that nobody tried and that may do the same, takes a name away.
