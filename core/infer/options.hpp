@@ -12,6 +12,7 @@ struct Options {
 
   // Plan of runs.
   std::vector<int> base_runs = {3, 3, 9};  // with independent seeds, before each of the re-based fits
+  int slope_runs = 1;                      // pairs of runs behind each sensitivity
   double step_scales = 2;                  // amplitude of an effect's run, in its scales
   int effect_runs = 1;                     // seeds behind each signature
   int refined = 3;                         // effects run again at their fitted amplitudes

@@ -44,6 +44,7 @@ class Diagnoser {
     d_.options.seed = study_.seed;
     d_.options.signature_noise = true;
     d_.options.base_runs = plan_.base;
+    d_.options.slope_runs = plan_.slopes;
     d_.options.refined = plan_.refined;
     d_.options.effect_runs = plan_.trials;
     say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +

@@ -11,12 +11,12 @@ namespace calx {
 namespace {
 
 constexpr int most_trials = 3;
-const std::array<DiagnosisPlan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
-                                             {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
-                                             {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
-                                             {{3, 2, 3}, 2, 2, 3, 2, 2, 2, 3},
-                                             {{2, 2, 2}, 1, 1, 3, 1, 1, 2, 2},
-                                             {{2, 2}, 0, 0, 0, 0, 0, 2, 2}}};
+const std::array<DiagnosisPlan, 6> plans = {{{{6, 6, 10}, 6, 6, 3, 8, 6, 5, 5, 8},
+                                             {{4, 4, 6}, 4, 4, 3, 6, 4, 4, 4, 6},
+                                             {{3, 3, 4}, 3, 3, 2, 4, 3, 3, 3, 4},
+                                             {{3, 2, 3}, 2, 2, 2, 3, 2, 2, 2, 3},
+                                             {{2, 2, 2}, 1, 1, 1, 3, 1, 1, 2, 2},
+                                             {{2, 2}, 1, 0, 0, 0, 0, 0, 2, 2}}};
 
 std::size_t used_cases(const Study& study, const std::vector<StudyObservable>& readings, bool reduced_only) {
   return static_cast<std::size_t>(std::count_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& c) {
@@ -34,7 +34,7 @@ std::size_t runs_of(const Study& study, const Library& library, DiagnosisPlan& p
   bool some_leave_a_case = false;
   for (const StudyParameter& p : study.parameters) {
     const std::size_t reached = std::min(p.cases.size(), cases);
-    runs += 2 * reached;
+    runs += static_cast<std::size_t>(2 * plan.slopes) * reached;
     some_leave_a_case = some_leave_a_case || reached < cases;
   }
   if (some_leave_a_case) runs += cases;
