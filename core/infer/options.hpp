@@ -32,6 +32,7 @@ struct Options {
 
   // Decision.
   double name_above = 0.9;
+  double unknown_above = 0.75;  // below, "not in the library" is one of several explanations
   double fitted_above = 0.1;   // probability that the fitted campaign alone must give a named effect
   double screen_above = 4.5;   // sd; leave-one-out residuals beyond it are events
   double gain_above = 3;       // nats of held-out log score

@@ -85,6 +85,7 @@ class FitByRuns {
     Matrix precision = w.transpose() * w;
     precision.diagonal() += prior_.cwiseAbs2().cwiseInverse();
     const Matrix v = precision.inverse();
+    best.freedom = secants * Matrix(Eigen::LLT<Matrix>(v).matrixL());
     Eigen::Index column = model_.u.size();
     for (const Vector& a : best.model.amplitudes) {
       const Vector along = a.norm() > 0 ? Vector(a / a.norm()) : Vector(Vector::Unit(a.size(), 0));
@@ -180,14 +181,12 @@ RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const Re
   return FitByRuns(d, simulator, start, seeds).go(rounds);
 }
 
-infer::FitCheck check_runs(const StudyDiagnosis& d, const Vector& figures, const std::vector<infer::Part>& parts,
+infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
                            std::size_t seeds) {
-  const infer::LinearModel& m = d.model;
   const infer::View& view = d.diagnosis.budget.both;
-  const infer::Freedom freedom = infer::freedom_of(m, parts, d.options);
-  const Matrix systematic = error_of_means(d, seeds) + m.sensitivities * m.sensitivities.transpose() +
-                            freedom.columns * freedom.columns.transpose() + freedom.own;
-  return infer::check_fit(m, d.bank, systematic, view.noise, view.y - figures, d.options, 2);
+  const Matrix systematic = error_of_means(d, seeds) + fit.freedom * fit.freedom.transpose() +
+                            infer::freedom_of(d.model, parts, d.options).own;
+  return infer::check_fit(d.model, d.bank, systematic, view.noise, view.y - fit.figures, d.options, 2);
 }
 
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,

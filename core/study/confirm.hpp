@@ -19,6 +19,7 @@ struct RealFit {
   RealModel model;
   std::vector<double> sd;  // of each strength, along its direction
   infer::Vector figures = {};  // mean of the runs there
+  infer::Matrix freedom = {};  // what the data leave open of parameters and strengths: covariance of figures, root
 };
 
 /// Gauss-Newton steps from `start` towards the fitted campaign, every step by the mean of runs with the same seeds and
@@ -26,9 +27,9 @@ struct RealFit {
 /// parameter would leave its range. Throws what StudySimulator::run_settings throws for the start.
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds);
 
-/// What the means of so many runs leave of both campaigns: the fit test with these runs as the base, free in what small
-/// changes of parameters and of the strengths of `parts` do.
-infer::FitCheck check_runs(const StudyDiagnosis& d, const infer::Vector& figures, const std::vector<infer::Part>& parts,
+/// The fit test asked what the runs at the place of a fit leave of both campaigns. parts: the effects, with the strengths
+/// fitted, whose formulas are held to be right within their tolerance.
+infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
                            std::size_t seeds);
 
 /// Means of runs of both models with new seeds, scored on the held-out campaign.

@@ -27,6 +27,7 @@ int self_test_studies(std::size_t budget) { return static_cast<int>(std::clamp<s
 /// In scales of the cause.
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
+constexpr int most_steps = 8;  // of the fit by runs of a cause that the fit test refuses
 constexpr int most_looks = 2;  // beyond the first, where it leaves the verdict open
 
 class Diagnoser {
@@ -284,20 +285,22 @@ class Diagnoser {
   /// The fit test may have refused no more than the linear model of a strong effect: the extended case is fitted by runs,
   /// and the test asks again what those runs leave of the data.
   void reconsider() {
-    keep_to_plan();
     infer::Diagnosis& v = d_.diagnosis;
-    if (plan_.steps == 0 || v.gain.log_score < d_.options.gain_above) return;
+    const auto one = static_cast<std::size_t>(plan_.step_seeds) * plan_.cases;
+    int steps = most_steps;
+    while (steps > 0 && !pays_for(static_cast<std::size_t>(1 + steps) * one + plan_.confirmation_runs(0))) --steps;
+    if (steps == 0 || v.gain.log_score < d_.options.gain_above) return;
     d_.ledger.stage = "extended case fitted by runs";
     RealFit fit;
     try {
-      fit = fit_by_runs(d_, *simulator_, {d_.u_after, d_.explained, d_.amplitudes}, plan_.steps, plan_.step_seeds);
+      fit = fit_by_runs(d_, *simulator_, {d_.u_after, d_.explained, d_.amplitudes}, steps, plan_.step_seeds);
     } catch (const Error& e) {
       if (e.fault() != Fault::numerics && e.fault() != Fault::settings) throw;
       return;
     }
     std::vector<infer::Part> parts = infer::parts_of(v.posterior, d_.explained);
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].amplitude = fit.model.amplitudes[k];
-    const infer::FitCheck check = check_runs(d_, fit.figures, parts, static_cast<std::size_t>(plan_.step_seeds));
+    const infer::FitCheck check = check_runs(d_, fit, parts, static_cast<std::size_t>(plan_.step_seeds));
     if (check.p < d_.options.fit_above) return;
     v.after = check;
     v.named.swap(v.refused);

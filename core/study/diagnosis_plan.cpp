@@ -10,13 +10,17 @@
 namespace calx {
 namespace {
 
-constexpr int most_trials = 3;
-const std::array<DiagnosisPlan, 6> plans = {{{{6, 6, 10}, 6, 6, 3, 8, 6, 5, 5, 8},
-                                             {{4, 4, 6}, 4, 4, 3, 6, 4, 4, 4, 6},
-                                             {{3, 3, 4}, 3, 3, 2, 4, 3, 3, 3, 4},
-                                             {{3, 2, 3}, 2, 2, 2, 3, 2, 2, 2, 3},
-                                             {{2, 2, 2}, 1, 1, 1, 3, 1, 1, 2, 2},
-                                             {{2, 2}, 1, 0, 0, 0, 0, 0, 2, 2}}};
+/// What is bought with runs that a plan leaves, one after the other: a seed of each signature, a pair of each sensitivity.
+constexpr std::array<int DiagnosisPlan::*, 7> extras = {&DiagnosisPlan::trials, &DiagnosisPlan::slopes,
+                                                        &DiagnosisPlan::slopes, &DiagnosisPlan::trials,
+                                                        &DiagnosisPlan::slopes, &DiagnosisPlan::slopes,
+                                                        &DiagnosisPlan::slopes};
+const std::array<DiagnosisPlan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
+                                             {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
+                                             {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
+                                             {{3, 2, 3}, 2, 2, 3, 2, 2, 2, 3},
+                                             {{2, 2, 2}, 1, 1, 3, 1, 1, 2, 2},
+                                             {{2, 2}, 0, 0, 0, 0, 0, 2, 2}}};
 
 std::size_t used_cases(const Study& study, const std::vector<StudyObservable>& readings, bool reduced_only) {
   return static_cast<std::size_t>(std::count_if(study.cases.begin(), study.cases.end(), [&](const StudyCase& c) {
@@ -60,8 +64,11 @@ DiagnosisPlan plan_of(const Study& study, Library& library, std::size_t* planned
   for (DiagnosisPlan plan : plans) {
     *planned = runs_of(study, library, plan);
     if (*planned > study.budget) continue;
-    for (DiagnosisPlan more = plan; ++more.trials <= most_trials && runs_of(study, library, more) <= study.budget;)
-      plan = more;
+    for (int DiagnosisPlan::*extra : extras) {
+      DiagnosisPlan more = plan;
+      more.*extra += 1;
+      if (runs_of(study, library, more) <= study.budget) plan = more;
+    }
     *planned = runs_of(study, library, plan);
     return plan;
   }

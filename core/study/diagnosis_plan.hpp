@@ -6,14 +6,14 @@
 
 namespace calx {
 
-/// Runs of a plan: seeds of the base in each pass, pairs behind each sensitivity, effects run again at their fitted strength, rounds where base and
+/// Runs of a plan: seeds of the base in each pass, effects run again at their fitted strength, rounds where base and
 /// leading effects are run again where the leading one puts the parameters, seeds of base and effects in each, rounds
 /// and seeds of the fit by runs of old and extended case, seeds of each side of the confirmation.
 struct DiagnosisPlan {
   std::vector<int> base;
-  int slopes, refined, rounds, rebased, leading, steps, step_seeds;
+  int refined, rounds, rebased, leading, steps, step_seeds;
   std::size_t confirmed;
-  int trials = 1;                                           // seeds behind each signature: what the budget leaves
+  int trials = 1, slopes = 1;  // seeds behind each signature, pairs behind each sensitivity: what the budget leaves
   std::size_t cases = 1, round_runs = 0, generic_runs = 0;  // cases of a run; runs of one round, of the generic terms
 
   /// Of both sides, with so many steps of the fit by runs.
