@@ -125,6 +125,17 @@ Matrix shape_at(const Signature& s, const Vector& amplitude) {
   return all;
 }
 
+/// Unit vectors all around; only along the other axis where nothing is known of one.
+std::vector<Vector> directions_of(const Signature& s) {
+  std::vector<Vector> out;
+  for (int c = 0; c < 2; ++c)
+    if (s.columns.col(1 - c).isZero(0))
+      for (double sign : {1.0, -1.0}) out.push_back(sign * Vector::Unit(2, c));
+  for (int k = 0; k < directions && out.empty(); ++k)
+    out.push_back((Vector(2) << std::cos(2 * pi * k / directions), std::sin(2 * pi * k / directions)).finished());
+  return out;
+}
+
 /// ln of the standard normal distribution function.
 double log_normal_cdf(double x) { return std::log(std::max(0.5 * std::erfc(-x / std::sqrt(2.0)), 1e-300)); }
 
@@ -161,9 +172,15 @@ Matrix noise_columns(const LinearModel& model, std::size_t effect, const Options
     smooth.colwise().normalize();
     out.conservativeResize(Eigen::NoChange, out.cols() + smooth.cols() + 1);
     out.rightCols(smooth.cols() + 1).setZero();
-    out.block(first, out.cols() - 1, n, 1) = sd * model.scatter.common[b] * all.blocks[b].sd;
-    out.block(first, out.cols() - 1 - smooth.cols(), n, smooth.cols()) =
-        sd * model.scatter.white[b] * all.blocks[b].sd.asDiagonal() * smooth;
+    const SeedScatter& scatter = model.scatter;
+    Vector own = sd * all.blocks[b].sd;
+    if (!scatter.profile.empty()) own = own.cwiseProduct(scatter.profile[b]);
+    // Scatter that is correlated along the index has more of itself in what is smooth.
+    const Matrix rest = autocorrelation_matrix(n, scatter.correlation.empty() ? 0 : scatter.correlation[b]);
+    for (Eigen::Index k = 0; k < smooth.cols(); ++k)
+      smooth.col(k) *= scatter.white[b] * std::sqrt(smooth.col(k).dot(rest * smooth.col(k)));
+    out.block(first, out.cols() - 1, n, 1) = scatter.common[b] * own;
+    out.block(first, out.cols() - 1 - smooth.cols(), n, smooth.cols()) = own.asDiagonal() * smooth;
   }
   return out;
 }
@@ -188,17 +205,15 @@ SingleFit fit_single(const Signature& s, const Metric& metric) {
   if (s.columns.cols() == 1) return fit_direction(s.columns.col(0), s.shape[0], s.scale, s.one_sided, r);
   std::vector<double> odds;
   SingleFit best;
-  for (int k = 0; k < directions; ++k) {
-    const Vector direction =
-        (Vector(2) << std::cos(2 * pi * k / directions), std::sin(2 * pi * k / directions)).finished();
+  for (const Vector& direction : directions_of(s)) {
     SingleFit fit = fit_direction(s.columns * direction, shape_at(s, direction), s.scale, true, r);
-    odds.push_back(fit.odds - std::log(directions));
-    if (k == 0 || fit.odds > best.odds) {
+    odds.push_back(fit.odds);
+    if (odds.size() == 1 || fit.odds > best.odds) {
       best = fit;
       best.amplitude = fit.amplitude[0] * direction;
     }
   }
-  best.odds = log_sum(odds);
+  best.odds = log_sum(odds) - std::log(static_cast<double>(odds.size()));
   return best;
 }
 

@@ -24,9 +24,8 @@ class Denoiser {
   struct Part {
     int first, size;
     Vector sd;
-    double white, alpha;  // whitening: (z - alpha mean(z)) / white
+    Matrix whitening, back;  // root of the inverse covariance of one run in declared sd, and its inverse
     std::vector<Kernel> kernels;
-    double mean_power, other_power;  // of the white prior: along the constant mode, along the others
   };
   std::vector<Part> parts_;
 };

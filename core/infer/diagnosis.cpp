@@ -68,7 +68,7 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
     if (d.after.p < options.fit_above) {
       d.verdict = Verdict::unknown;
       d.reason = "the best cause does not fit the data";
-      d.named.clear();
+      d.refused.swap(d.named);
     } else if (d.gain.log_score < options.gain_above) {
       d.verdict = Verdict::ambiguous;
       d.reason = "the best cause does not predict the held-out data";
@@ -77,7 +77,7 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
       d.verdict = Verdict::named;
       d.reason = "probable, fits, and predicts the held-out data";
     }
-  } else if (p.unknown > 0.5) {
+  } else if (p.unknown > options.unknown_above) {
     d.gain = held_out_gain(model, budget, bank.terms[p.discrepancy.term], p.discrepancy.strength);
     if (d.gain.log_score >= options.gain_above) {
       d.verdict = Verdict::unknown;

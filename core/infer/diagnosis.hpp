@@ -18,6 +18,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::ambiguous;
   std::string reason;
   std::vector<std::size_t> named;   // effects
+  std::vector<std::size_t> refused;  // probable, but the fit test refused them
   std::vector<double> probability;  // of each effect, after the calibration map of the options
   Posterior posterior;              // of the campaigns together, or of the fitted one without stacking
   Posterior fitted;                 // of the fitted campaign alone

@@ -15,6 +15,10 @@ constexpr double pi = 3.14159265358979323846;
 // With fewer runs of one seed their median says no more of it than the run without effects.
 constexpr Eigen::Index least_shared = 6;
 constexpr int shared_passes = 2;
+constexpr std::uint64_t slope_seeds = 800;  // after the seeds of the base
+// Beyond so many times the scatter of runs without an effect, or where some cannot be made, runs with it tell nothing
+// of one direction of a vector: a case may not hold its powder together in every direction.
+constexpr double wild = 25;
 
 std::vector<RunPoint> base_points(const Vector& u, int count, std::uint64_t& seed) {
   std::vector<RunPoint> points;
@@ -74,7 +78,7 @@ double LinearModel::response_variance(int seeds) const {
 }
 
 int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options) {
-  int runs = 1 + 2 * parameters + options.refined;
+  int runs = 1 + 2 * parameters * options.slope_runs + options.refined;
   for (int n : options.base_runs) runs += n;
   for (const Effect& effect : effects) runs += effect.instrument ? 0 : effect.components * options.effect_runs;
   return runs;
@@ -95,6 +99,13 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   model.sensitivities = Matrix::Zero(rows, p);
   Vector moved = Vector::Ones(p), steps(p);  // moved: expected square of u' - u
   for (int k = 0; k < p; ++k) steps[k] = simulator.step(k);
+  // Half the squared difference of two runs of one seed, over the step, in variances of a run.
+  const auto slope_variance = [&](double rho, int k) {
+    return (1 - rho) / (2 * steps[k] * steps[k] * options.slope_runs);
+  };
+  const auto slope_weight = [&](double rho) {
+    return (1 - rho) / (2 * options.slope_runs) * moved.cwiseQuotient(steps.cwiseAbs2()).sum();
+  };
 
   for (std::size_t pass = 0; pass < options.base_runs.size(); ++pass) {
     model.base_seed = seed;
@@ -105,16 +116,21 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     if (pass == 0) {
       std::vector<RunPoint> points;
       for (int k = 0; k < p; ++k)
-        for (double sign : {1.0, -1.0}) {
-          points.push_back({model.u, -1, {}, common_seed});
-          points.back().u[k] += sign * steps[k];
-        }
+        for (int s = 0; s < options.slope_runs; ++s)
+          for (double sign : {1.0, -1.0}) {
+            points.push_back({model.u, -1, {}, s == 0 ? common_seed : common_seed + slope_seeds + s});
+            points.back().u[k] += sign * steps[k];
+          }
       const Matrix runs = simulator.run(points);
       const Denoiser denoise(observables, model.scatter);
       const double rho = options.common_numbers < 0 ? 0.5 : options.common_numbers;
       for (int k = 0; k < p; ++k) {
-        differences.col(k) = (runs.col(2 * k) - runs.col(2 * k + 1)) / (2 * steps[k]);
-        model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * steps[k] * steps[k]));
+        differences.col(k).setZero();
+        for (int s = 0; s < options.slope_runs; ++s) {
+          const Eigen::Index pair = 2 * (k * options.slope_runs + s);
+          differences.col(k) += (runs.col(pair) - runs.col(pair + 1)) / (2 * steps[k] * options.slope_runs);
+        }
+        model.sensitivities.col(k) = denoise(differences.col(k), slope_variance(rho, k));
       }
     }
     // Earlier groups are carried here by the sensitivities, and weigh the less the farther away they are.
@@ -128,7 +144,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     }
     model.base = sum / weight;
     model.base_weight = square / (weight * weight);
-    model.sensitivity_weight = (1 - 0.5) / 2 * moved.cwiseQuotient(steps.cwiseAbs2()).sum();
+    model.sensitivity_weight = slope_weight(0.5);
     const Budget budget = error_budget(model, options);
     const NuisanceFit fit = fit_nuisance(model, budget, options);
     moved = (fit.u - model.u).cwiseAbs2() + fit.covariance.diagonal();
@@ -174,17 +190,26 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
       }
     const Matrix again = simulator.run(more);
     const auto count = static_cast<Eigen::Index>(changed.size());
+    const Vector scatter = model.scatter.covariance(observables).diagonal();
     for (Eigen::Index k = 0; k < count; ++k) {
       // A run that could not be made counts for nothing, unlike one that changed nothing.
-      const int first_made = runs.col(k + 1).allFinite() ? 1 : 0;
-      int made = first_made;
-      Vector sum = model.response(changed[static_cast<std::size_t>(k)]);
+      std::vector<Vector> made;
+      if (runs.col(k + 1).allFinite()) made.push_back(model.response(runs.col(k + 1)));
       for (int s = 1; s < seeds; ++s) {
         const Vector run = again.col((s - 1) * count + k);
-        if (run.allFinite()) sum += model.response(run, model.base_columns.col(s - 1)), ++made;
+        if (run.allFinite()) made.push_back(model.response(run, model.base_columns.col(s - 1)));
       }
-      if (made > first_made)
-        responses[static_cast<std::size_t>(k)] = denoise(sum / made, model.response_variance(made));
+      if (made.empty()) continue;
+      Vector mean = Vector::Zero(rows);
+      for (const Vector& one : made) mean += one / static_cast<double>(made.size());
+      double apart = 0;
+      for (const Vector& one : made) apart += (one - mean).cwiseAbs2().cwiseQuotient(scatter).mean();
+      const bool vector =
+          effects[static_cast<std::size_t>(points[static_cast<std::size_t>(k) + 1].effect)].components > 1;
+      responses[static_cast<std::size_t>(k)] =
+          vector && (static_cast<int>(made.size()) < seeds || apart > wild * static_cast<double>(made.size() - 1))
+              ? Vector(Vector::Zero(rows))
+              : denoise(mean, model.response_variance(static_cast<int>(made.size())));
     }
   }
   const double variance = seeds > 1 ? model.response_variance(seeds) : model.response_variance();
@@ -206,8 +231,8 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     model.signature_variance.push_back(effects[e].instrument ? 0 : variance / (step_size * step_size));
   }
   for (int k = 0; k < p; ++k)
-    model.sensitivities.col(k) = denoise(differences.col(k), 2 * (1 - rho) / (4 * steps[k] * steps[k]));
-  model.sensitivity_weight = (1 - rho) / 2 * moved.cwiseQuotient(steps.cwiseAbs2()).sum();
+    model.sensitivities.col(k) = denoise(differences.col(k), slope_variance(rho, k));
+  model.sensitivity_weight = slope_weight(rho);
   model.runs = planned_runs(effects, p, options) - options.refined;
   return model;
 }

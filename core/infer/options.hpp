@@ -12,6 +12,7 @@ struct Options {
 
   // Plan of runs.
   std::vector<int> base_runs = {3, 3, 9};  // with independent seeds, before each of the re-based fits
+  int slope_runs = 1;                      // pairs of runs behind each sensitivity
   double step_scales = 2;                  // amplitude of an effect's run, in its scales
   int effect_runs = 1;                     // seeds behind each signature
   int refined = 3;                         // effects run again at their fitted amplitudes
@@ -31,6 +32,7 @@ struct Options {
 
   // Decision.
   double name_above = 0.9;
+  double unknown_above = 0.75;  // below, "not in the library" is one of several explanations
   double fitted_above = 0.1;   // probability that the fitted campaign alone must give a named effect
   double screen_above = 4.5;   // sd; leave-one-out residuals beyond it are events
   double gain_above = 3;       // nats of held-out log score

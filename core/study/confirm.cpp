@@ -59,7 +59,7 @@ class FitByRuns {
   RealFit go(int rounds) {
     Vector x = flat(model_);
     Vector figures = run(model_);
-    RealFit best{model_, {}};
+    RealFit best{model_, {}, figures};
     double least = misfit(x, figures);
     Matrix secants = secants_;
     for (int round = 0; round < rounds; ++round) {
@@ -79,12 +79,13 @@ class FitByRuns {
       x = to, figures = next;
       const double now = misfit(x, figures);
       if (now >= least) continue;
-      least = now, best.model = unflat(x), secants = secants_;
+      least = now, best.model = unflat(x), best.figures = figures, secants = secants_;
     }
     const Matrix w = metric_->whiten(secants);
     Matrix precision = w.transpose() * w;
     precision.diagonal() += prior_.cwiseAbs2().cwiseInverse();
     const Matrix v = precision.inverse();
+    best.freedom = secants * Matrix(Eigen::LLT<Matrix>(v).matrixL());
     Eigen::Index column = model_.u.size();
     for (const Vector& a : best.model.amplitudes) {
       const Vector along = a.norm() > 0 ? Vector(a / a.norm()) : Vector(Vector::Unit(a.size(), 0));
@@ -178,6 +179,14 @@ std::vector<double> list_of(const Vector& v) { return {v.data(), v.data() + v.si
 
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds) {
   return FitByRuns(d, simulator, start, seeds).go(rounds);
+}
+
+infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
+                           std::size_t seeds) {
+  const infer::View& view = d.diagnosis.budget.both;
+  const Matrix systematic = error_of_means(d, seeds) + fit.freedom * fit.freedom.transpose() +
+                            infer::freedom_of(d.model, parts, d.options).own;
+  return infer::check_fit(d.model, d.bank, systematic, view.noise, view.y - fit.figures, d.options, 2);
 }
 
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,

@@ -18,12 +18,19 @@ struct RealModel {
 struct RealFit {
   RealModel model;
   std::vector<double> sd;  // of each strength, along its direction
+  infer::Vector figures = {};  // mean of the runs there
+  infer::Matrix freedom = {};  // what the data leave open of parameters and strengths: covariance of figures, root
 };
 
 /// Gauss-Newton steps from `start` towards the fitted campaign, every step by the mean of runs with the same seeds and
 /// with secants corrected by what the runs gave (Broyden 1965); the best place of all is kept. Steps end where a
 /// parameter would leave its range. Throws what StudySimulator::run_settings throws for the start.
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds);
+
+/// The fit test asked what the runs at the place of a fit leave of both campaigns. parts: the effects, with the strengths
+/// fitted, whose formulas are held to be right within their tolerance.
+infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
+                           std::size_t seeds);
 
 /// Means of runs of both models with new seeds, scored on the held-out campaign.
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,

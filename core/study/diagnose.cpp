@@ -22,10 +22,13 @@ namespace {
 using infer::Matrix;
 using infer::Vector;
 
-/// Data sets of the self-test per cause and strength, and strengths in scales of the cause.
-constexpr int self_test_studies = 24;
+/// Data sets of the self-test per cause and strength: many where runs are many, for they cost more than a few runs do.
+int self_test_studies(std::size_t budget) { return static_cast<int>(std::clamp<std::size_t>(budget / 8, 8, 24)); }
+/// In scales of the cause.
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
+constexpr int most_steps = 8;  // of the fit by runs of a cause that the fit test refuses
+constexpr int most_looks = 2;  // beyond the first, where it leaves the verdict open
 
 class Diagnoser {
  public:
@@ -42,6 +45,7 @@ class Diagnoser {
     d_.options.seed = study_.seed;
     d_.options.signature_noise = true;
     d_.options.base_runs = plan_.base;
+    d_.options.slope_runs = plan_.slopes;
     d_.options.refined = plan_.refined;
     d_.options.effect_runs = plan_.trials;
     say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +
@@ -55,6 +59,7 @@ class Diagnoser {
     if (d_.library.runs_for_all > 0)
       d_.notes.push_back("the budget leaves causes out; " + std::to_string(d_.library.runs_for_all) +
                          " runs would try all of them");
+    if (!d_.diagnosis.refused.empty()) reconsider();
     if (d_.diagnosis.verdict == infer::Verdict::named) check_name();
     if (d_.diagnosis.verdict == infer::Verdict::named) confirm();
     if (d_.diagnosis.verdict == infer::Verdict::unknown) describe_unknown();
@@ -91,6 +96,7 @@ class Diagnoser {
     d_.bank = infer::make_bank(d_.model.observables, d_.model.base);
     infer::refine(d_.model, d_.bank, *simulator_, d_.options);
     refine_leaders();
+    look_again();
     if (d_.measured.split_repeats)
       d_.notes.push_back(
           "the study holds no data out, so the later half of the repeats was; data at other conditions would prove "
@@ -100,16 +106,17 @@ class Diagnoser {
   }
 
   /// The leading effect puts the parameters elsewhere than the model without it: base and leading effects are run there
-  /// again, with several seeds, for their signatures carry the verdict. Repeated until strength and parameters stay.
+  /// again, with several seeds, for their signatures carry the verdict. Repeated until strength and parameters stay, by
+  /// the plan at first and then as long as the runs that are left pay for a confirmation, too.
   void refine_leaders() {
     std::size_t last = d_.model.effects.size();
     Vector last_amplitude;
-    for (int round = 0; round < plan_.rounds && !d_.model.effects.empty(); ++round) {
+    for (int round = 0; !d_.model.effects.empty(); ++round) {
+      if (round >= plan_.rounds && (plan_.rounds == 0 || !pays_for(plan_.round_runs + plan_.confirmation_runs(1))))
+        return;
       const infer::Budget budget = infer::error_budget(d_.model, d_.options);
       const infer::Posterior posterior = single_causes(budget);
-      std::size_t leader = 0;
-      for (std::size_t e = 1; e < posterior.fits.size(); ++e)
-        if (posterior.fits[e].odds > posterior.fits[leader].odds) leader = e;
+      const std::size_t leader = leader_of(posterior);
       // Without a trace of an effect, all is where it belongs already.
       if (posterior.fits[leader].odds < 1) return;
       const Vector amplitude = posterior.fits[leader].amplitude;
@@ -118,12 +125,51 @@ class Diagnoser {
                            (u - d_.model.u).norm() < 0.3;
       if (settled) return;
       last = leader, last_amplitude = amplitude;
-      infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
-      keep_foreign_base();
-      infer::Options more = d_.options;
-      more.refined = leaders, more.refined_runs = plan_.leading;
-      infer::refine(d_.model, d_.bank, *simulator_, more);
+      run_leaders(u, leaders);
     }
+  }
+
+  /// Where the first look names nothing although something is wrong, runs kept for the confirmation of a name go to
+  /// more seeds of the causes that are left; a bare confirmation stays paid for.
+  void look_again() {
+    const std::size_t cost =
+        plan_.round_runs + static_cast<std::size_t>((rivals - leaders) * plan_.leading) * plan_.cases;
+    for (int look = 0; look < most_looks && plan_.rounds > 0 && !d_.model.effects.empty(); ++look) {
+      if (!pays_for(cost + plan_.confirmation_runs(0))) return;
+      const infer::Diagnosis now = infer::diagnose(d_.model, d_.bank, d_.options);
+      // What the fit test refuses is fitted by runs instead.
+      if (now.verdict == infer::Verdict::named || !now.refused.empty()) return;
+      const infer::Budget budget = infer::error_budget(d_.model, d_.options);
+      const infer::Posterior posterior = single_causes(budget);
+      const std::size_t leader = leader_of(posterior);
+      if (posterior.fits[leader].odds < 1) return;
+      run_leaders(nuisances_with(budget, d_.model.signatures[leader] * posterior.fits[leader].amplitude), rivals);
+    }
+  }
+
+  void run_leaders(const Vector& u, int count) {
+    infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
+    keep_foreign_base();
+    infer::Options more = d_.options;
+    more.refined = count, more.refined_runs = plan_.leading;
+    infer::refine(d_.model, d_.bank, *simulator_, more);
+  }
+
+  static std::size_t leader_of(const infer::Posterior& posterior) {
+    std::size_t leader = 0;
+    for (std::size_t e = 1; e < posterior.fits.size(); ++e)
+      if (posterior.fits[e].odds > posterior.fits[leader].odds) leader = e;
+    return leader;
+  }
+
+  /// Rounds beyond the plan leave fewer steps of the fit by runs to do, and fewer runs to do them.
+  void keep_to_plan() {
+    while (plan_.steps > 0 && !pays_for(plan_.confirmation_runs(plan_.steps))) --plan_.steps;
+  }
+
+  /// Beside the generic terms, which a verdict of "not in the library" runs instead.
+  bool pays_for(std::size_t runs) const {
+    return d_.ledger.runs.size() + runs + plan_.generic_runs <= d_.ledger.planned;
   }
 
   /// What another program gave is the base at the prior; the cases only say how it changes from there.
@@ -185,7 +231,8 @@ class Diagnoser {
                      [&](std::size_t a, std::size_t b) { return v.posterior.inclusion[a] > v.posterior.inclusion[b]; });
     order.resize(std::min(order.size(), self_test_causes));
     say("self-test on made-up data");
-    d_.self_test = infer::self_test(d_.model, d_.bank, order, self_test_strengths, self_test_studies, d_.options);
+    d_.self_test =
+        infer::self_test(d_.model, d_.bank, order, self_test_strengths, self_test_studies(study_.budget), d_.options);
     d_.options.calibration = d_.self_test.calibration;
     for (std::size_t e = 0; e < v.probability.size(); ++e)
       v.probability[e] = d_.options.calibration(v.posterior.inclusion[e]);
@@ -200,8 +247,9 @@ class Diagnoser {
   /// Strengths of what was named, and the nuisance parameters without and with it, from all data.
   void find_amplitudes() {
     const infer::Diagnosis& v = d_.diagnosis;
-    d_.explained = v.named;
-    for (std::size_t e = 0; e < v.posterior.inclusion.size() && v.named.empty(); ++e)
+    d_.explained = v.named.empty() ? v.refused : v.named;
+    const bool open = d_.explained.empty();
+    for (std::size_t e = 0; e < v.posterior.inclusion.size() && open; ++e)
       if (v.posterior.inclusion[e] > 0.5 && d_.explained.size() < 2) d_.explained.push_back(e);
     d_.amplitudes.clear();
     for (const infer::Part& part : infer::parts_of(v.posterior, d_.explained)) d_.amplitudes.push_back(part.amplitude);
@@ -234,6 +282,33 @@ class Diagnoser {
     }
   }
 
+  /// The fit test may have refused no more than the linear model of a strong effect: the extended case is fitted by runs,
+  /// and the test asks again what those runs leave of the data.
+  void reconsider() {
+    infer::Diagnosis& v = d_.diagnosis;
+    const auto one = static_cast<std::size_t>(plan_.step_seeds) * plan_.cases;
+    int steps = most_steps;
+    while (steps > 0 && !pays_for(static_cast<std::size_t>(1 + steps) * one + plan_.confirmation_runs(0))) --steps;
+    if (steps == 0 || v.gain.log_score < d_.options.gain_above) return;
+    d_.ledger.stage = "extended case fitted by runs";
+    RealFit fit;
+    try {
+      fit = fit_by_runs(d_, *simulator_, {d_.u_after, d_.explained, d_.amplitudes}, steps, plan_.step_seeds);
+    } catch (const Error& e) {
+      if (e.fault() != Fault::numerics && e.fault() != Fault::settings) throw;
+      return;
+    }
+    std::vector<infer::Part> parts = infer::parts_of(v.posterior, d_.explained);
+    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].amplitude = fit.model.amplitudes[k];
+    const infer::FitCheck check = check_runs(d_, fit, parts, static_cast<std::size_t>(plan_.step_seeds));
+    if (check.p < d_.options.fit_above) return;
+    v.after = check;
+    v.named.swap(v.refused);
+    v.verdict = infer::Verdict::named;
+    v.reason = "probable, fits when it is run, and predicts the held-out data";
+    d_.u_after = fit.model.u, d_.amplitudes = fit.model.amplitudes;
+  }
+
   /// A strength out of range, or a cause that nobody tried and that may do the same, takes a name away.
   void check_name() {
     if (d_.library.runs_for_all > 0)
@@ -249,6 +324,7 @@ class Diagnoser {
   /// The old and the extended case, fitted by runs and then run with new seeds against the held-out data.
   void confirm() {
     const RealModel old{d_.u_before, {}, {}}, named{d_.u_after, d_.explained, d_.amplitudes};
+    keep_to_plan();
     const auto fitted = [&](const char* stage, const RealModel& start) {
       d_.ledger.stage = stage;
       // A poor plan takes what the linear model says.
@@ -275,6 +351,7 @@ class Diagnoser {
   /// What is not in the library, as a shape of the observables and, where the study asks for it, as a generic term.
   void describe_unknown() {
     d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
+    keep_to_plan();
     d_.generic = fit_generic_term(study_, d_, *simulator_, plan_);
   }
 

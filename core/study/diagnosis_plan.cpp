@@ -10,7 +10,11 @@
 namespace calx {
 namespace {
 
-constexpr int most_trials = 3;
+/// What is bought with runs that a plan leaves, one after the other: a seed of each signature, a pair of each sensitivity.
+constexpr std::array<int DiagnosisPlan::*, 7> extras = {&DiagnosisPlan::trials, &DiagnosisPlan::slopes,
+                                                        &DiagnosisPlan::slopes, &DiagnosisPlan::trials,
+                                                        &DiagnosisPlan::slopes, &DiagnosisPlan::slopes,
+                                                        &DiagnosisPlan::slopes};
 const std::array<DiagnosisPlan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
                                              {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
                                              {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
@@ -26,14 +30,15 @@ std::size_t used_cases(const Study& study, const std::vector<StudyObservable>& r
   }));
 }
 
-std::size_t runs_of(const Study& study, const Library& library, const DiagnosisPlan& plan) {
+/// Fills in what a round costs.
+std::size_t runs_of(const Study& study, const Library& library, DiagnosisPlan& plan) {
   const std::size_t cases = used_cases(study, study.observables, false);
   std::size_t runs = cases;  // the partner of the runs with effects
   for (const int n : plan.base) runs += static_cast<std::size_t>(n) * cases;
   bool some_leave_a_case = false;
   for (const StudyParameter& p : study.parameters) {
     const std::size_t reached = std::min(p.cases.size(), cases);
-    runs += 2 * reached;
+    runs += static_cast<std::size_t>(2 * plan.slopes) * reached;
     some_leave_a_case = some_leave_a_case || reached < cases;
   }
   if (some_leave_a_case) runs += cases;
@@ -44,11 +49,12 @@ std::size_t runs_of(const Study& study, const Library& library, const DiagnosisP
     runs += static_cast<std::size_t>(c.effect.components * plan.trials) * reached;
     most = std::max(most, reached);
   }
-  runs += static_cast<std::size_t>(plan.refined + plan.rounds * leaders * plan.leading) * most;
-  if (plan.rounds > 0) runs += static_cast<std::size_t>(plan.rounds * (1 + plan.rebased)) * cases;
-  runs += read_generic_terms(study).size() * generic_seeds * cases;
-  const int fitted = plan.steps > 0 ? (1 + plan.steps) * plan.step_seeds : 0;
-  runs += 2 * (static_cast<std::size_t>(fitted) + plan.confirmed) * cases;
+  plan.cases = cases;
+  plan.round_runs =
+      static_cast<std::size_t>(leaders * plan.leading) * most + static_cast<std::size_t>(1 + plan.rebased) * cases;
+  runs += static_cast<std::size_t>(plan.refined) * most + static_cast<std::size_t>(plan.rounds) * plan.round_runs;
+  plan.generic_runs = read_generic_terms(study).size() * generic_seeds * cases;
+  runs += plan.generic_runs + plan.confirmation_runs(plan.steps);
   return runs + full_runs * used_cases(study, study.observables, true);
 }
 
@@ -58,11 +64,15 @@ DiagnosisPlan plan_of(const Study& study, Library& library, std::size_t* planned
   for (DiagnosisPlan plan : plans) {
     *planned = runs_of(study, library, plan);
     if (*planned > study.budget) continue;
-    for (DiagnosisPlan more = plan; ++more.trials <= most_trials && runs_of(study, library, more) <= study.budget;)
-      plan = more;
+    for (int DiagnosisPlan::*extra : extras) {
+      DiagnosisPlan more = plan;
+      more.*extra += 1;
+      if (runs_of(study, library, more) <= study.budget) plan = more;
+    }
     *planned = runs_of(study, library, plan);
     return plan;
   }
+  DiagnosisPlan poorest = plans.back();
   library.runs_for_all = *planned;
   while (*planned > study.budget) {
     std::size_t least = library.candidates.size();
@@ -74,9 +84,9 @@ DiagnosisPlan plan_of(const Study& study, Library& library, std::size_t* planned
     if (least == library.candidates.size()) break;
     library.untested.push_back({library.candidates[least].effect.id, "the budget of runs does not pay for it"});
     library.candidates.erase(library.candidates.begin() + static_cast<std::ptrdiff_t>(least));
-    *planned = runs_of(study, library, plans.back());
+    *planned = runs_of(study, library, poorest);
   }
-  if (*planned <= study.budget) return plans.back();
+  if (*planned <= study.budget) return poorest;
   throw Error(Fault::settings, study.file + " /budget/runs: " + std::to_string(study.budget) +
                                    " runs are too few; the cases with " + std::to_string(study.parameters.size()) +
                                    " parameters need " + std::to_string(*planned) + " at least. Give --budget " +

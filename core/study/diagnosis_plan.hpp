@@ -13,10 +13,17 @@ struct DiagnosisPlan {
   std::vector<int> base;
   int refined, rounds, rebased, leading, steps, step_seeds;
   std::size_t confirmed;
-  int trials = 1;  // seeds behind each signature: what the budget leaves
+  int trials = 1, slopes = 1;  // seeds behind each signature, pairs behind each sensitivity: what the budget leaves
+  std::size_t cases = 1, round_runs = 0, generic_runs = 0;  // cases of a run; runs of one round, of the generic terms
+
+  /// Of both sides, with so many steps of the fit by runs.
+  std::size_t confirmation_runs(int fit_steps) const {
+    const int fitted = fit_steps > 0 ? (1 + fit_steps) * step_seeds : 0;
+    return 2 * (static_cast<std::size_t>(fitted) + confirmed) * cases;
+  }
 };
-/// Leading effects that are run again in each round.
-constexpr int leaders = 2;
+/// Leading effects that are run again in each round, and where the first look leaves the verdict open.
+constexpr int leaders = 2, rivals = 4;
 /// Runs of each full case that carry what the reduced ones say.
 constexpr std::size_t full_runs = 4;
 

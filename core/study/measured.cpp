@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/nearest.hpp"
 #include "base/units.hpp"
+#include "infer/seed_scatter.hpp"
 #include "study/height_scan.hpp"
 #include "study/table.hpp"
 
@@ -17,6 +18,9 @@ namespace {
 /// Share of the scatter of one repeat that a model may miss when the study declares no tolerance: half of it is not
 /// worth explaining, and zero would make the posterior narrower than any model deserves. House rule.
 constexpr double kPresetTolerance = 0.35;
+/// Degrees of freedom that speak for neighbours without correlation before any repeat is seen. House rule.
+constexpr double kUncorrelated = 10;
+constexpr double kMostCorrelated = 0.95;
 
 struct NoiseModel {
   double sd = 0, relative = 0;  // absolute, in the observable's unit; share of the value
@@ -123,6 +127,29 @@ std::vector<Repeat> repeats_of(Object& m, const File& file, const StudyObservabl
   return out;
 }
 
+/// sd and lag-one correlation of a curve from its repeats. Both are pooled over the places, since a few repeats say
+/// little about each: an sd stays its own where places differ by more than chance. What adds up along the index, as
+/// the mass in a vessel does, is correlated, and misleads where each of its numbers counts as news.
+void scatter_of_curve(const Node& node, MeasuredData& data) {
+  const auto places = static_cast<Eigen::Index>(data.y.size()), repeats = static_cast<Eigen::Index>(data.repeats);
+  infer::Matrix z(places, repeats);
+  for (Eigen::Index r = 0; r < repeats; ++r)
+    for (Eigen::Index k = 0; k < places; ++k)
+      z(k, r) =
+          data.each[static_cast<std::size_t>(r)][static_cast<std::size_t>(k)] - data.y[static_cast<std::size_t>(k)];
+  const double freedom = static_cast<double>(repeats - 1);
+  const infer::Vector variances = z.rowwise().squaredNorm() / freedom;
+  if (!(variances.mean() > 0)) node.fail("all repeats are equal; give \"sd\"");
+  const infer::Vector sd = (variances.mean() * infer::shrunk_variances(variances, freedom)).cwiseSqrt();
+  for (Eigen::Index k = 0; k < places; ++k) data.sd[static_cast<std::size_t>(k)] = sd[k];
+  if (places < 4) return;
+  z = sd.cwiseInverse().asDiagonal() * z;
+  const double n = static_cast<double>(places), numbers = freedom * (n - 1),
+               seen =
+                   z.topRows(places - 1).cwiseProduct(z.bottomRows(places - 1)).sum() / z.squaredNorm() * n / (n - 1);
+  data.correlation = std::clamp(seen * numbers / (numbers + kUncorrelated), 0.0, kMostCorrelated);
+}
+
 /// A scan with columns of x, y and height: the modes of each repeat, over the rectangle that all of them cover.
 void from_scan(Object& m, const File& file, StudyObservable& o) {
   const auto column = [&](const char* key, const char* what) {
@@ -211,19 +238,14 @@ void from_file(Object& m, const Node& file_node, StudyObservable& o) {
       file_node.fail("repeat " + std::to_string(k + 1) + " of " + given +
                      " is measured at other places than the first; all repeats need the same");
   if (!noise.given && repeats.size() < 2) too_few(file_node, repeats.size());
-  // The scatter of a curve is pooled over its places: a few repeats say little about each.
-  double pooled = 0;
-  const double n = static_cast<double>(repeats.size());
   for (std::size_t k = 0; k < data.x.size(); ++k) {
     double mean = 0;
-    for (const Repeat& r : repeats) mean += r.y[k] / n;
-    for (const Repeat& r : repeats) pooled += (r.y[k] - mean) * (r.y[k] - mean);
+    for (const Repeat& r : repeats) mean += r.y[k] / static_cast<double>(repeats.size());
     data.y.push_back(mean);
+    data.sd.push_back(sd_at(noise, mean));
   }
-  pooled = std::sqrt(pooled / (std::max(n - 1, 1.0) * static_cast<double>(data.x.size())));
   data.sd_estimated = !noise.given;
-  if (data.sd_estimated && !(pooled > 0)) file_node.fail("all repeats are equal; give \"sd\"");
-  for (const double y : data.y) data.sd.push_back(noise.given ? sd_at(noise, y) : pooled);
+  if (data.sd_estimated) scatter_of_curve(file_node, data);
 }
 
 void from_values(Object& m, const Node& node, const std::vector<double>& at, StudyObservable& o) {

@@ -52,6 +52,7 @@ bool join(Block& to, const Block& other) {
   const double tolerance = to.tolerance * to.sd.mean();
   to.sd = ((to.sd.cwiseAbs2() + other.sd.cwiseAbs2()) / 2).cwiseSqrt();
   to.tolerance = tolerance / to.sd.mean();
+  to.autocorrelation = (to.autocorrelation + other.autocorrelation) / 2;
   (to.fit.size() == 0 ? to.fit : to.hold) = to.fit.size() == 0 ? other.fit : other.hold;
   return true;
 }

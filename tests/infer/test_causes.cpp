@@ -36,6 +36,25 @@ TEST_CASE("without tolerance the odds of an effect are the closed form of a scal
   }
 }
 
+TEST_CASE("a vector of which one direction is not known is as odd as its other component alone, to either side") {
+  calx::Random random(7, 1);
+  const Vector r = 1.5 * normal_vector(random, 12);
+  const Metric metric(Matrix::Identity(12, 12), r);
+  Signature scalar;
+  scalar.columns = normal_vector(random, 12), scalar.shape = {Matrix(12, 0)}, scalar.scale = 0.7;
+  const SingleFit alone = fit_single(scalar, metric);
+  for (int known : {0, 1}) {
+    Signature vector = scalar;
+    vector.columns = Matrix::Zero(12, 2);
+    vector.columns.col(known) = scalar.columns;
+    vector.shape = {Matrix(12, 0), Matrix(12, 0)};
+    const SingleFit fit = fit_single(vector, metric);
+    CHECK(std::abs(fit.odds - alone.odds) < 4e-4);  // twice the bound above
+    CHECK(fit.amplitude[1 - known] == 0);
+    CHECK(fit.amplitude[known] * alone.amplitude[0] > 0);
+  }
+}
+
 TEST_CASE("with tolerance the odds are the integral of dense densities over the amplitude") {
   const LinearModel model = small_model();
   calx::Random random(6, 1);

@@ -71,6 +71,19 @@ TEST_CASE("a displaced curve is told as such, with its displacement along the in
   CHECK(terms[0].words.find("series: displaced by +") == 0);
 }
 
+TEST_CASE("a cause that leaves too much of the data is refused, and said to have been") {
+  Vector mean = 3 * small_signatures()[1];
+  for (int k = 0; k < 6; ++k) mean[k] += 3;
+  Options options;
+  options.unknown_rival = options.pairs = false;
+  const Diagnosis d = diagnosed(measured(mean, 9), options);
+  CHECK(d.verdict == Verdict::unknown);
+  CHECK(d.named.empty());
+  CHECK(d.refused == std::vector<std::size_t>{1});
+  CHECK(d.after.p < 0.01);
+  CHECK(diagnosed(measured(3 * small_signatures()[1], 9), options).refused.empty());
+}
+
 TEST_CASE("the same seed gives the same numbers") {
   const LinearModel model = measured(small_signatures()[1], 4);
   const Diagnosis a = diagnosed(model), b = diagnosed(model);

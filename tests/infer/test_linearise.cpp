@@ -64,6 +64,45 @@ TEST_CASE("a linear simulator gives its plane back, re-based where the data are,
   CHECK((model.signatures[1] - small_signatures()[1]).norm() < 1e-12);
 }
 
+namespace {
+
+/// As above, but for runs of one seed that scatter as differently as those of two.
+class RoughSimulator : public SmallSimulator {
+ public:
+  RoughSimulator() : SmallSimulator(0) {}
+  Matrix run(const std::vector<RunPoint>& points) override {
+    Matrix out = SmallSimulator::run(points);
+    for (Eigen::Index k = 0; k < out.cols(); ++k) {
+      calx::Random random(points[static_cast<std::size_t>(k)].seed, made_++);
+      out.col(k) += 2 * normal_vector(random, 31);
+    }
+    return out;
+  }
+
+ private:
+  std::uint64_t made_ = 9;
+};
+
+}  // namespace
+
+TEST_CASE("sixteen pairs of runs behind a sensitivity leave a quarter of the error of one, and count") {
+  Options options;
+  options.refined = 0, options.base_runs = {6};
+  double squares[2] = {0, 0}, weights[2] = {0, 0};
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    for (int many = 0; many < 2; ++many) {
+      RoughSimulator simulator;
+      options.seed = seed, options.slope_runs = many == 0 ? 1 : 16;
+      const LinearModel model = linearise(measured(10), {}, simulator, options);
+      CHECK(simulator.runs == planned_runs({}, 1, options));
+      squares[many] += std::pow(model.sensitivities(30, 0) - 3, 2), weights[many] += model.sensitivity_weight;
+    }
+  // A pair, a step of one to either side, leaves 2 / sqrt(2) = 1.4, drawn to nothing where the scatter hides it.
+  CHECK(std::sqrt(squares[0] / 20) > 0.9);
+  CHECK(std::sqrt(squares[1] / 20) < 0.55);
+  CHECK(weights[1] < 0.2 * weights[0]);
+}
+
 TEST_CASE("a response that is not proportional to the amplitude is corrected at the fitted amplitude") {
   SmallSimulator simulator(0.01);
   Options options;
@@ -122,4 +161,34 @@ TEST_CASE("what all runs of a seed share is taken out of a response, and its noi
   CHECK(stated < 0.26);
   // 880 numbers: a variance known to sqrt(2 / 880); three times that.
   CHECK(square / count == doctest::Approx(stated).epsilon(3 * std::sqrt(2.0 / count)));
+}
+
+namespace {
+
+/// A vector whose first direction moves a number of its own, while runs along the second one scatter by 30 sd.
+class WildSimulator : public SharedSimulator {
+ public:
+  using SharedSimulator::SharedSimulator;
+  Matrix run(const std::vector<RunPoint>& points) override {
+    Matrix out = SharedSimulator::run(points);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (points[k].effect >= 0 && points[k].amplitude[1] != 0) {
+        calx::Random wild(points[k].seed, 7);
+        out.col(static_cast<Eigen::Index>(k)) += 15 * normal_vector(wild, 31);
+      }
+    return out;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a direction in which the runs of a vector contradict each other is left out, the other one kept") {
+  Options options;
+  options.effect_runs = 3, options.step_scales = 40;
+  WildSimulator simulator(5);
+  std::vector<Effect> effects(1);
+  effects[0].components = 2;
+  const LinearModel model = linearise(measured(0), effects, simulator, options);
+  CHECK(model.signatures[0](0, 0) == doctest::Approx(1).epsilon(0.1));
+  CHECK(model.signatures[0].col(1).isZero(0));
 }

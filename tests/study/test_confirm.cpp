@@ -62,6 +62,15 @@ TEST_CASE("a fit by runs keeps the best place it was at, even if that is where i
   CHECK((still.model.u - f.at(0.6, 0.15)).norm() == 0);
 }
 
+TEST_CASE("runs where the data are pass the fit test, however far the plane is from them, and runs elsewhere do not") {
+  Fixture f;
+  const RealFit fit = fit_by_runs(f.d, *f.simulator, {f.at(0.6, 0.15), {}, {}}, 0, 5);
+  f.d.model.base.array() += 100;
+  CHECK(check_runs(f.d, fit, {}, 5).p > 0.01);
+  const RealFit far = fit_by_runs(f.d, *f.simulator, {f.at(0.3, 0.3), {}, {}}, 0, 5);
+  CHECK(check_runs(f.d, far, {}, 5).p < 0.01);
+}
+
 TEST_CASE("an extension is confirmed where its runs are nearer to the held-out data, and not otherwise") {
   Fixture f;
   const RealModel far{f.at(0.3, 0.3), {}, {}}, near{f.at(0.6, 0.15), {}, {}};

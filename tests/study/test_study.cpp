@@ -85,6 +85,31 @@ TEST_CASE("files in other units are converted, noise has an absolute and a relat
   CHECK(s.observables[0].tolerance == doctest::Approx(0.05));
 }
 
+TEST_CASE("the scatter of a curve is that of its repeats, place by place where it differs, with their correlation") {
+  const calx_test::Scratch scratch;
+  std::ofstream file(scratch / "curve.csv");
+  file << "run,time_s,mass_g\n";
+  // Repeats whose departures are 1, -1, 2, -2 of a shape that is 0.01 at first and 0.1 later: each place has the sd of
+  // these, 1.826, times the shape. Three degrees of freedom draw the sd together, and neighbours go together.
+  const double away[] = {1, -1, 2, -2};
+  for (int r = 0; r < 4; ++r)
+    for (int k = 0; k < 12; ++k)
+      file << r << ',' << 0.3 + 0.01 * k << ',' << 5 + away[r] * (k < 6 ? 0.01 : 0.1) << '\n';
+  file.close();
+  std::ofstream(scratch / "study.json") << R"({"calx_study": 1, "cases": {"hopper": {"case": ")" << CALX_SOURCE_DIR
+                                        << R"(/examples/calibration/slot_hopper.json"}},
+    "parameters": [{"name": "f", "range": [0.1, 0.8], "set": ["/contacts/0/parameters/friction"]}],
+    "observables": [{"name": "m", "kind": "hopper-discharge", "case": "hopper", "sensor": "in hopper", "column": "mass_kg",
+      "against": "time_s", "unit": "g", "measured": {"file": "curve.csv", "x": "time_s", "y": "mass_g", "repeat": "run"}}]})";
+  const MeasuredData m = read_study(scratch / "study.json", {CALX_PLUGIN_DIR}).observables[0].measured;
+  CHECK(m.sd_estimated);
+  const double all = std::sqrt(10.0 / 3 * (0.01 * 0.01 + 0.1 * 0.1) / 2);
+  CHECK(m.sd[0] < 0.85 * all);
+  CHECK(m.sd[11] > 1.1 * all);
+  // Certain correlation, drawn to none by the weight of 10 numbers against 33.
+  CHECK(m.correlation == doctest::Approx(33.0 / 43).epsilon(0.1));
+}
+
 TEST_CASE("a curve of a sensor is as good as its columns") {
   const calx_test::Scratch scratch;
   const auto study = [&](const std::string& against) {
