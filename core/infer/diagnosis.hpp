@@ -17,13 +17,13 @@ const char* name(Verdict verdict);
 struct Diagnosis {
   Verdict verdict = Verdict::ambiguous;
   std::string reason;
-  std::vector<std::size_t> named;   // effects
+  std::vector<std::size_t> named;    // effects
   std::vector<std::size_t> refused;  // probable, but the fit test refused them
-  std::vector<double> probability;  // of each effect, after the calibration map of the options
-  Posterior posterior;              // of the campaigns together, or of the fitted one without stacking
-  Posterior fitted;                 // of the fitted campaign alone
-  FitCheck before, after;           // of the recalibrated model, and with the named effects
-  Gain gain;                        // of the named effects, or of the unknown term
+  std::vector<double> probability;   // of each effect, after the calibration map of the options
+  Posterior posterior;               // of the campaigns together, or of the fitted one without stacking
+  Posterior fitted;                  // of the fitted campaign alone
+  FitCheck before, after;            // of the recalibrated model, and with the named effects
+  Gain gain;                         // of the named effects, or of the unknown term
   double mixture_score = 0;      // held-out log score of all explanations of the fitted campaign that hold a named one
   Budget budget;                 // screened
   std::vector<Event> events;     // of the fitted campaign

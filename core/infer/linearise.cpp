@@ -230,8 +230,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     const double step_size = options.step_scales * effects[e].scale;
     model.signature_variance.push_back(effects[e].instrument ? 0 : variance / (step_size * step_size));
   }
-  for (int k = 0; k < p; ++k)
-    model.sensitivities.col(k) = denoise(differences.col(k), slope_variance(rho, k));
+  for (int k = 0; k < p; ++k) model.sensitivities.col(k) = denoise(differences.col(k), slope_variance(rho, k));
   model.sensitivity_weight = slope_weight(rho);
   model.runs = planned_runs(effects, p, options) - options.refined;
   return model;

@@ -33,14 +33,14 @@ struct Options {
   // Decision.
   double name_above = 0.9;
   double unknown_above = 0.75;  // below, "not in the library" is one of several explanations
-  double fitted_above = 0.1;   // probability that the fitted campaign alone must give a named effect
-  double screen_above = 4.5;   // sd; leave-one-out residuals beyond it are events
-  double gain_above = 3;       // nats of held-out log score
-  double partner_above = 1;    // nats that a second named effect must add
-  double fit_above = 0.01;     // p of the fit test
-  double global_above = 0.05;  // p below which "no discrepancy shown" is not said
-  int nulls = 400;             // simulated data sets behind every p
-  IsotonicMap calibration;     // of stated probabilities; empty: none
+  double fitted_above = 0.1;    // probability that the fitted campaign alone must give a named effect
+  double screen_above = 4.5;    // sd; leave-one-out residuals beyond it are events
+  double gain_above = 3;        // nats of held-out log score
+  double partner_above = 1;     // nats that a second named effect must add
+  double fit_above = 0.01;      // p of the fit test
+  double global_above = 0.05;   // p below which "no discrepancy shown" is not said
+  int nulls = 400;              // simulated data sets behind every p
+  IsotonicMap calibration;      // of stated probabilities; empty: none
 
   // Parts of the method that tests switch off to see the result get worse.
   bool recalibrate = true, seed_scatter = true, unknown_rival = true, pairs = true, stacking = true;

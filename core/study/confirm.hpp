@@ -17,7 +17,7 @@ struct RealModel {
 
 struct RealFit {
   RealModel model;
-  std::vector<double> sd;  // of each strength, along its direction
+  std::vector<double> sd;      // of each strength, along its direction
   infer::Vector figures = {};  // mean of the runs there
   infer::Matrix freedom = {};  // what the data leave open of parameters and strengths: covariance of figures, root
 };
@@ -27,8 +27,8 @@ struct RealFit {
 /// parameter would leave its range. Throws what StudySimulator::run_settings throws for the start.
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds);
 
-/// The fit test asked what the runs at the place of a fit leave of both campaigns. parts: the effects, with the strengths
-/// fitted, whose formulas are held to be right within their tolerance.
+/// The fit test asked what the runs at the place of a fit leave of both campaigns. parts: the effects, with the
+/// strengths fitted, whose formulas are held to be right within their tolerance.
 infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
                            std::size_t seeds);
 

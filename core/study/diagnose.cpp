@@ -282,8 +282,8 @@ class Diagnoser {
     }
   }
 
-  /// The fit test may have refused no more than the linear model of a strong effect: the extended case is fitted by runs,
-  /// and the test asks again what those runs leave of the data.
+  /// The fit test may have refused no more than the linear model of a strong effect: the extended case is fitted by
+  /// runs, and the test asks again what those runs leave of the data.
   void reconsider() {
     infer::Diagnosis& v = d_.diagnosis;
     const auto one = static_cast<std::size_t>(plan_.step_seeds) * plan_.cases;
