@@ -10,11 +10,11 @@
 namespace calx {
 namespace {
 
-/// What is bought with runs that a plan leaves, one after the other: a seed of each signature, a pair of each
-/// sensitivity.
-constexpr std::array<int DiagnosisPlan::*, 7> extras = {
-    &DiagnosisPlan::trials, &DiagnosisPlan::slopes, &DiagnosisPlan::slopes, &DiagnosisPlan::trials,
-    &DiagnosisPlan::slopes, &DiagnosisPlan::slopes, &DiagnosisPlan::slopes};
+/// What is bought with runs that a plan leaves, one after the other.
+constexpr std::array<int DiagnosisPlan::*, 9> extras = {
+    &DiagnosisPlan::trials,     &DiagnosisPlan::slopes,     &DiagnosisPlan::slopes,
+    &DiagnosisPlan::leading,    &DiagnosisPlan::step_seeds, &DiagnosisPlan::leading,
+    &DiagnosisPlan::step_seeds, &DiagnosisPlan::trials,     &DiagnosisPlan::slopes};
 const std::array<DiagnosisPlan, 6> plans = {{{{6, 6, 10}, 6, 3, 8, 6, 5, 5, 8},
                                              {{4, 4, 6}, 4, 3, 6, 4, 4, 4, 6},
                                              {{3, 3, 4}, 3, 2, 4, 3, 3, 3, 4},
