@@ -41,6 +41,7 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
   const Posed posed = options.stacking ? pose(model, budget.systematic, view, options) : fit;
   d.posterior = options.stacking ? weigh(model, bank, Metric(posed.covariance, posed.residual), options) : d.fitted;
   d.set = credible_set(d.posterior, 0.95);
+  const bool none_is_left = std::find(d.set.begin(), d.set.end(), model.effects.size()) != d.set.end();
   for (double p : d.posterior.inclusion) d.probability.push_back(options.calibration(p));
 
   d.before = check_fit(model, bank, posed.covariance - view.noise, view.noise, posed.residual, options, 1);
@@ -86,7 +87,7 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
       d.verdict = Verdict::ambiguous;
       d.reason = "a discrepancy outside the library is not reproduced by the held-out data";
     }
-  } else if (p.none > 0.5 || d.before.p > options.global_above) {
+  } else if (p.none > 0.5 || (d.before.p > options.global_above && none_is_left)) {
     d.verdict = Verdict::none;
     d.reason = "no discrepancy is shown";
   } else {

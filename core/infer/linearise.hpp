@@ -48,6 +48,10 @@ struct LinearModel {
 /// Number of runs of a plan, refinement included.
 int planned_runs(const std::vector<Effect>& effects, int parameters, const Options& options);
 
+/// Parameters drawn back to where the powder may be: what asks for more is likelier an effect, and its signature
+/// belongs there.
+Vector within_reach(const Vector& u);
+
 /// Runs the simulator as planned: base runs with independent seeds before each fit of u to the campaign "fit", central
 /// differences and one run per physical component of an effect with common random numbers. The mean surface wants
 /// independent seeds and differences want common ones (Chen, Ankenman and Nelson 2012). Seeds follow from the seed of

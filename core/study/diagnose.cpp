@@ -148,7 +148,7 @@ class Diagnoser {
   }
 
   void run_leaders(const Vector& u, int count) {
-    infer::rebase(d_.model, u, plan_.rebased, *simulator_, d_.options);
+    infer::rebase(d_.model, infer::within_reach(u), plan_.rebased, *simulator_, d_.options);
     keep_foreign_base();
     infer::Options more = d_.options;
     more.refined = count, more.refined_runs = plan_.leading;
