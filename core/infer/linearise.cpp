@@ -15,7 +15,6 @@ constexpr double pi = 3.14159265358979323846;
 // With fewer runs of one seed their median says no more of it than the run without effects.
 constexpr Eigen::Index least_shared = 6;
 constexpr int shared_passes = 2;
-constexpr double farthest = 2.5;            // prior sd
 constexpr std::uint64_t slope_seeds = 800;  // after the seeds of the base
 // Beyond so many times the scatter of runs without an effect, or where some cannot be made, runs with it tell nothing
 // of one direction of a vector: a case may not hold its powder together in every direction.
@@ -55,7 +54,9 @@ double estimate_common(const Denoiser& denoise, const std::vector<Vector>& chang
 
 }  // namespace
 
-Vector within_reach(const Vector& u) { return u.cwiseMax(-farthest).cwiseMin(farthest); }
+Vector within_reach(const Vector& u, const Options& options) {
+  return u.cwiseMax(-options.reach).cwiseMin(options.reach);
+}
 
 double LinearModel::foretold(double weight) const {
   return common_numbers <= 0 ? 0 : common_numbers / (common_numbers + (1 - common_numbers) * weight);
@@ -151,7 +152,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
     const Budget budget = error_budget(model, options);
     const NuisanceFit fit = fit_nuisance(model, budget, options);
     moved = (fit.u - model.u).cwiseAbs2() + fit.covariance.diagonal();
-    if (pass + 1 < options.base_runs.size()) model.u = within_reach(fit.u);
+    if (pass + 1 < options.base_runs.size()) model.u = within_reach(fit.u, options);
   }
 
   std::vector<RunPoint> points = {{model.u, -1, {}, common_seed}};

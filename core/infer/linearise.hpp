@@ -50,7 +50,7 @@ int planned_runs(const std::vector<Effect>& effects, int parameters, const Optio
 
 /// Parameters drawn back to where the powder may be: what asks for more is likelier an effect, and its signature
 /// belongs there.
-Vector within_reach(const Vector& u);
+Vector within_reach(const Vector& u, const Options& options);
 
 /// Runs the simulator as planned: base runs with independent seeds before each fit of u to the campaign "fit", central
 /// differences and one run per physical component of an effect with common random numbers. The mean surface wants

@@ -12,6 +12,7 @@ struct Options {
 
   // Plan of runs.
   std::vector<int> base_runs = {3, 3, 9};  // with independent seeds, before each of the re-based fits
+  double reach = 1e9;                      // prior sd beyond which no base run is made
   int slope_runs = 1;                      // pairs of runs behind each sensitivity
   double step_scales = 2;                  // amplitude of an effect's run, in its scales
   int effect_runs = 1;                     // seeds behind each signature

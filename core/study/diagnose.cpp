@@ -28,6 +28,7 @@ int self_test_studies(std::size_t budget) { return static_cast<int>(std::clamp<s
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
 constexpr int most_steps = 8;  // of the fit by runs of a cause that the fit test refuses
+constexpr double reach = 2.5;  // prior sd of a parameter beyond which no base run is made
 constexpr int most_looks = 2;  // beyond the first, where it leaves the verdict open
 
 class Diagnoser {
@@ -46,6 +47,7 @@ class Diagnoser {
     d_.options.signature_noise = true;
     d_.options.base_runs = plan_.base;
     d_.options.slope_runs = plan_.slopes;
+    d_.options.reach = reach;
     d_.options.refined = plan_.refined;
     d_.options.effect_runs = plan_.trials;
     say("plan: at most " + std::to_string(d_.ledger.planned) + " runs of " + std::to_string(study_.budget) + ", " +
@@ -148,7 +150,7 @@ class Diagnoser {
   }
 
   void run_leaders(const Vector& u, int count) {
-    infer::rebase(d_.model, infer::within_reach(u), plan_.rebased, *simulator_, d_.options);
+    infer::rebase(d_.model, infer::within_reach(u, d_.options), plan_.rebased, *simulator_, d_.options);
     keep_foreign_base();
     infer::Options more = d_.options;
     more.refined = count, more.refined_runs = plan_.leading;

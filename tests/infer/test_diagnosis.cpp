@@ -84,6 +84,16 @@ TEST_CASE("a cause that leaves too much of the data is refused, and said to have
   CHECK(diagnosed(measured(3 * small_signatures()[1], 9), options).refused.empty());
 }
 
+TEST_CASE("nothing is not said to be wrong only where nothing is left as an explanation") {
+  Options options;
+  options.unknown_rival = false;
+  options.name_above = 1.1, options.global_above = -1;  // no name, and a p that always allows to say "none"
+  const Diagnosis d = diagnosed(measured(2 * small_signatures()[1], 2), options);
+  CHECK(d.set == std::vector<std::size_t>{1});
+  CHECK(d.verdict == Verdict::ambiguous);
+  CHECK(diagnosed(measured(Vector::Zero(31), 1), options).verdict == Verdict::none);
+}
+
 TEST_CASE("the same seed gives the same numbers") {
   const LinearModel model = measured(small_signatures()[1], 4);
   const Diagnosis a = diagnosed(model), b = diagnosed(model);

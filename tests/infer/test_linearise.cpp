@@ -103,6 +103,14 @@ TEST_CASE("sixteen pairs of runs behind a sensitivity leave a quarter of the err
   CHECK(weights[1] < 0.2 * weights[0]);
 }
 
+TEST_CASE("data that ask for a far parameter do not take the base there") {
+  SmallSimulator simulator(0.05);
+  Options options;
+  options.reach = 2.5;
+  CHECK(linearise(measured(60), {}, simulator, options).u[0] == 2.5);
+  CHECK(linearise(measured(-60), {}, simulator, options).u[0] == -2.5);
+}
+
 TEST_CASE("a response that is not proportional to the amplitude is corrected at the fitted amplitude") {
   SmallSimulator simulator(0.01);
   Options options;

@@ -1,5 +1,5 @@
-"""The part of the tier that the gate runs: one control, the same bytes whatever happens on the way, and the scorer itself.
-Budgets are small; the full tier is tier.py."""
+"""The part of the tier that the gate runs: one hidden effect, one control, the same bytes whatever happens on the way, and the
+scorer itself. The full tier is tier.py."""
 import json
 import os
 import pathlib
@@ -19,6 +19,7 @@ from tier import make, solve  # noqa: E402
 CALX = os.environ["CALX"]
 SEED = 7  # not that of the table
 CONTROL = "control_pile"
+HIDDEN = "blocked"  # a pocket of the rotor
 
 
 class Tier(unittest.TestCase):
@@ -41,6 +42,10 @@ class Tier(unittest.TestCase):
     def test_nothing_is_named_where_nothing_is_hidden(self):
         s = score(self.diagnosed(CONTROL, 40))
         self.assertEqual(s["outcome"], "quiet", s["line"])
+
+    def test_a_hidden_effect_is_named(self):
+        s = score(self.diagnosed(HIDDEN, 100))
+        self.assertEqual((s["outcome"], s["named"]), ("right", ["calx.blocked-pocket"]), s["line"])
 
     def test_the_public_folder_does_not_tell(self):
         folder = self.dir / "told"
