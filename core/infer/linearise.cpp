@@ -103,7 +103,7 @@ LinearModel linearise(const Observables& observables, const std::vector<Effect>&
   model.sensitivities = Matrix::Zero(rows, p);
   Vector moved = Vector::Ones(p), steps(p);  // moved: expected square of u' - u
   for (int k = 0; k < p; ++k) steps[k] = simulator.step(k);
-  // Half the squared difference of two runs of one seed, over the step, in variances of a run.
+  // Variance of half the difference of two runs of one seed over the step, in variances of a run.
   const auto slope_variance = [&](double rho, int k) {
     return (1 - rho) / (2 * steps[k] * steps[k] * options.slope_runs);
   };
