@@ -27,9 +27,10 @@ int self_test_studies(std::size_t budget) { return static_cast<int>(std::clamp<s
 /// In scales of the cause.
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
-constexpr int most_steps = 8;  // of the fit by runs of a cause that the fit test refuses
-constexpr double reach = 2.5;  // prior sd of a parameter beyond which no base run is made
-constexpr int most_looks = 2;  // beyond the first, where it leaves the verdict open
+constexpr int most_steps = 8;     // of the fit by runs of a cause that the fit test refuses
+constexpr double beyond = 1.645;  // sd of a strength: the lower end of its 90 % interval
+constexpr double reach = 2.5;     // prior sd of a parameter beyond which no base run is made
+constexpr int most_looks = 2;     // beyond the first, where it leaves the verdict open
 
 class Diagnoser {
  public:
@@ -334,7 +335,8 @@ class Diagnoser {
     };
     try {
       const RealModel old_fit = fitted("old case fitted by runs", old).model;
-      const RealFit fit = fitted("extended case fitted by runs", named);
+      RealFit fit = fitted("extended case fitted by runs", named);
+      if (!keep_strong(fit)) return;
       d_.ledger.stage = "confirmation with new seeds";
       d_.confirmation = confirm_by_runs(d_, *simulator_, old_fit, fit.model, plan_.confirmed);
       d_.u_before = old_fit.u, d_.u_after = fit.model.u;
@@ -348,6 +350,36 @@ class Diagnoser {
       withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
     else
       check_name();
+  }
+
+  /// Of two causes each has to keep a strength beyond its 90 % interval when it is run: what makes up for the linear
+  /// model of the other does not. Without it the other has to fit alone. False where the name is withdrawn.
+  bool keep_strong(RealFit& fit) {
+    if (d_.explained.size() != 2 || fit.sd.size() != 2) return true;
+    const auto strength = [&](std::size_t k) {
+      return fit.model.amplitudes[k].norm() / std::max(fit.sd[k], d_.diagnosis.posterior.fits[d_.explained[k]].sd);
+    };
+    const std::size_t weak = strength(0) < strength(1) ? 0 : 1;
+    if (strength(weak) > beyond) return true;
+    d_.notes.push_back(d_.model.effects[d_.explained[weak]].id +
+                       " was probable as a second cause, but keeps no strength beyond its error when it is run");
+    RealModel alone = fit.model;
+    const std::size_t left = alone.effects[1 - weak];
+    alone.effects = {left}, alone.amplitudes = {alone.amplitudes[1 - weak]};
+    d_.explained = d_.diagnosis.named = {left};
+    d_.amplitudes = alone.amplitudes;
+    d_.diagnosis.gain =
+        infer::held_out_gain(d_.model, d_.diagnosis.budget, infer::parts_of(d_.diagnosis.fitted, {left}), d_.options);
+    const auto one = static_cast<std::size_t>(plan_.step_seeds) * plan_.cases;
+    int steps = plan_.steps;
+    while (steps > 0 && !pays_for(static_cast<std::size_t>(1 + steps) * one + plan_.confirmation_runs(0))) --steps;
+    fit = fit_by_runs(d_, *simulator_, alone, steps, plan_.step_seeds);
+    std::vector<infer::Part> parts = infer::parts_of(d_.diagnosis.posterior, {left});
+    parts[0].amplitude = fit.model.amplitudes[0];
+    d_.diagnosis.after = check_runs(d_, fit, parts, static_cast<std::size_t>(plan_.step_seeds));
+    if (d_.diagnosis.after.p >= d_.options.fit_above) return true;
+    withdraw("of two probable causes one keeps no strength when it is run, and the other does not fit the data alone");
+    return false;
   }
 
   /// What is not in the library, as a shape of the observables and, where the study asks for it, as a generic term.
