@@ -28,10 +28,15 @@ std::string what_is_named(const DiagnosisResult& d) {
 std::string perhaps_beside(const DiagnosisResult& d) {
   std::string out;
   for (const DiagnosisResult::Cause& c : d.causes)
-    if (!c.named && c.probability >= 0.1)
+    if (!c.named && !c.is_dropped && c.probability >= 0.1)
       out += (out.empty() ? " Perhaps at work beside it: " : ", ") + names_html({c.label}) + " (" +
              share_html(c.probability) + ")";
-  return out.empty() ? "" : out + ".";
+  if (!out.empty()) out += ".";
+  for (const DiagnosisResult::Cause& c : d.causes)
+    if (c.is_dropped)
+      out += " " + names_html({c.label}) +
+             " looked likely beside it, but keeps no strength beyond its error when it is run.";
+  return out;
 }
 
 Banner named_banner(const DiagnosisResult& d) {

@@ -80,7 +80,7 @@ Result::Cause read_cause(const Json& j) {
   c.probability = number(j, "probability", 0);
   c.evidence = number(j, "evidence", c.probability);
   c.signal_to_noise = number(j, "signal_to_noise");
-  c.named = flag(j, "named"), c.is_instrument = flag(j, "instrument");
+  c.named = flag(j, "named"), c.is_dropped = flag(j, "dropped"), c.is_instrument = flag(j, "instrument");
   c.parameters = each(j, "parameters", read_amount);
   c.rivals = each(j, "rivals", [](const Json& r) { return Result::Rival{text(r, "effect"), text(r, "separate")}; });
   return c;

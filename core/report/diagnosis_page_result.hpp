@@ -23,7 +23,7 @@ struct DiagnosisResult {
     std::string id, label, summary;        // label: the id, with the parameter if several causes share the id
     double probability = 0, evidence = 0;  // as stated, after the self-test's calibration; before it
     double signal_to_noise = unknown;
-    bool named = false, is_instrument = false;
+    bool named = false, is_dropped = false, is_instrument = false;
     std::vector<Amount> parameters;  // the first is the strength
     std::vector<Rival> rivals;
   };

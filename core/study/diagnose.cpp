@@ -365,6 +365,7 @@ class Diagnoser {
                        " was probable as a second cause, but keeps no strength beyond its error when it is run");
     RealModel alone = fit.model;
     const std::size_t left = alone.effects[1 - weak];
+    d_.dropped = {d_.explained[weak]};
     alone.effects = {left}, alone.amplitudes = {alone.amplitudes[1 - weak]};
     d_.explained = d_.diagnosis.named = {left};
     d_.amplitudes = alone.amplitudes;

@@ -199,6 +199,7 @@ class DiagnosisText {
                      {"evidence", v_.posterior.inclusion[e]},
                      {"log_odds", v_.posterior.fits[e].odds},
                      {"named", std::count(v_.named.begin(), v_.named.end(), e) > 0},
+                     {"dropped", std::count(d_.dropped.begin(), d_.dropped.end(), e) > 0},
                      {"parameters", parameters(e)},
                      {"signal_to_noise", d_.confusion.detectability[e]},
                      {"instrument", c.info.is_instrument},

@@ -156,6 +156,10 @@ TEST_CASE("causes that may act beside the named one are told") {
   CHECK_FALSE(has(page_of(j), "Perhaps at work beside it"));
   j["causes"][1]["probability"] = 0.4;
   CHECK(has(page_of(j), "Perhaps at work beside it: <code>calx.worn-pocket</code> (40\xc2\xa0%)."));
+  j["causes"][1]["dropped"] = true;
+  const std::string page = page_of(j);
+  CHECK_FALSE(has(page, "Perhaps at work beside it"));
+  CHECK(has(page, "<code>calx.worn-pocket</code> looked likely beside it, but keeps no strength"));
 }
 
 TEST_CASE("two causes by one effect are told apart by their parameter") {
