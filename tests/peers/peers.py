@@ -208,7 +208,8 @@ def table():
     print("| point | figure | Calx | sd of our seeds (n) | source | sd of its seeds | difference |")
     print("|---|---|---|---|---|---|---|")
     for (point, figure), found in sorted(groups.items()):
-        ours = [r["ours"] for r in found]
+        # A column is the beginning of a lift of the same seed, and no second one.
+        ours = list({(r["seed"], r["step"]): r["ours"] for r in found}.values())
         mean, theirs, sd = statistics.mean(ours), found[0]["theirs"], found[0]["their_sd"]
         if theirs is None:
             print(f"| {point}, {found[0]['at_s']:g} s | {figure} | {mean:.4g} | - ({len(ours)}) | not kept here | - | - |")
