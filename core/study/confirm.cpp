@@ -38,6 +38,13 @@ Matrix error_of_means(const StudyDiagnosis& d, std::size_t seeds) {
          d.model.scatter.covariance(d.model.observables) / static_cast<double>(seeds);
 }
 
+std::vector<infer::Part> parts_of(const StudyDiagnosis& d, const RealModel& model) {
+  std::vector<infer::Part> parts;
+  for (std::size_t k = 0; k < model.effects.size(); ++k)
+    parts.push_back({model.effects[k], model.amplitudes[k], d.diagnosis.posterior.fits[model.effects[k]].shape_factor});
+  return parts;
+}
+
 class FitByRuns {
  public:
   FitByRuns(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int seeds)
@@ -181,11 +188,10 @@ RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const Re
   return FitByRuns(d, simulator, start, seeds).go(rounds);
 }
 
-infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
-                           std::size_t seeds) {
+infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, std::size_t seeds) {
   const infer::View& view = d.diagnosis.budget.both;
   const Matrix systematic = error_of_means(d, seeds) + fit.freedom * fit.freedom.transpose() +
-                            infer::freedom_of(d.model, parts, d.options).own;
+                            infer::freedom_of(d.model, parts_of(d, fit.model), d.options).own;
   return infer::check_fit(d.model, d.bank, systematic, view.noise, view.y - fit.figures, d.options, 2);
 }
 
@@ -206,12 +212,8 @@ Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator,
 
   const infer::LinearModel& m = d.model;
   Vector foretold = m.base + m.sensitivities * (extended.u - m.u);
-  std::vector<infer::Part> parts;
-  for (std::size_t k = 0; k < extended.effects.size(); ++k) {
-    const std::size_t e = extended.effects[k];
-    foretold += m.signatures[e] * extended.amplitudes[k];
-    parts.push_back({e, extended.amplitudes[k], d.diagnosis.posterior.fits[e].shape_factor});
-  }
+  const std::vector<infer::Part> parts = parts_of(d, extended);
+  for (const infer::Part& part : parts) foretold += m.signatures[part.effect] * part.amplitude;
   const Matrix spread =
       m.scatter.covariance(all) * (1 / static_cast<double>(seeds) + m.base_weight + m.sensitivity_weight) +
       infer::freedom_of(m, parts, d.options).own;

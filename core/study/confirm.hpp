@@ -27,10 +27,9 @@ struct RealFit {
 /// parameter would leave its range. Throws what StudySimulator::run_settings throws for the start.
 RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& start, int rounds, int seeds);
 
-/// The fit test asked what the runs at the place of a fit leave of both campaigns. parts: the effects, with the
-/// strengths fitted, whose formulas are held to be right within their tolerance.
-infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, const std::vector<infer::Part>& parts,
-                           std::size_t seeds);
+/// The fit test asked what the runs at the place of a fit, so many seeds of them, leave of both campaigns. Formulas of
+/// the effects are held to be right within their tolerance.
+infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, std::size_t seeds);
 
 /// Means of runs of both models with new seeds, scored on the held-out campaign.
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,

@@ -165,9 +165,20 @@ class Diagnoser {
     return leader;
   }
 
-  /// Rounds beyond the plan leave fewer steps of the fit by runs to do, and fewer runs to do them.
-  void keep_to_plan() {
-    while (plan_.steps > 0 && !pays_for(plan_.confirmation_runs(plan_.steps))) --plan_.steps;
+  /// Rounds beyond the plan leave fewer steps of the fit by runs to do, and fewer runs to do them. reserve: runs that
+  /// stay paid for beside the confirmation.
+  void keep_to_plan(std::size_t reserve) {
+    while (plan_.steps > 0 && !pays_for(plan_.confirmation_runs(plan_.steps) + reserve)) --plan_.steps;
+  }
+
+  /// Runs at one place of a fit.
+  std::size_t place_runs() const { return static_cast<std::size_t>(plan_.step_seeds) * plan_.cases; }
+
+  /// Steps of one fit by runs that leave a bare confirmation paid for; -1 where not even its first place is.
+  int steps_paid(int most) const {
+    while (most >= 0 && !pays_for(static_cast<std::size_t>(1 + most) * place_runs() + plan_.confirmation_runs(0)))
+      --most;
+    return most;
   }
 
   /// Beside the generic terms, which a verdict of "not in the library" runs instead.
@@ -289,10 +300,8 @@ class Diagnoser {
   /// runs, and the test asks again what those runs leave of the data.
   void reconsider() {
     infer::Diagnosis& v = d_.diagnosis;
-    const auto one = static_cast<std::size_t>(plan_.step_seeds) * plan_.cases;
-    int steps = most_steps;
-    while (steps > 0 && !pays_for(static_cast<std::size_t>(1 + steps) * one + plan_.confirmation_runs(0))) --steps;
-    if (steps == 0 || v.gain.log_score < d_.options.gain_above) return;
+    const int steps = steps_paid(most_steps);
+    if (steps < 1 || v.gain.log_score < d_.options.gain_above) return;
     d_.ledger.stage = "extended case fitted by runs";
     RealFit fit;
     try {
@@ -301,9 +310,7 @@ class Diagnoser {
       if (e.fault() != Fault::numerics && e.fault() != Fault::settings) throw;
       return;
     }
-    std::vector<infer::Part> parts = infer::parts_of(v.posterior, d_.explained);
-    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].amplitude = fit.model.amplitudes[k];
-    const infer::FitCheck check = check_runs(d_, fit, parts, static_cast<std::size_t>(plan_.step_seeds));
+    const infer::FitCheck check = check_runs(d_, fit, static_cast<std::size_t>(plan_.step_seeds));
     if (check.p < d_.options.fit_above) return;
     v.after = check;
     v.named.swap(v.refused);
@@ -327,7 +334,8 @@ class Diagnoser {
   /// The old and the extended case, fitted by runs and then run with new seeds against the held-out data.
   void confirm() {
     const RealModel old{d_.u_before, {}, {}}, named{d_.u_after, d_.explained, d_.amplitudes};
-    keep_to_plan();
+    // One of two may have to be fitted alone.
+    keep_to_plan(d_.explained.size() > 1 ? place_runs() : 0);
     const auto fitted = [&](const char* stage, const RealModel& start) {
       d_.ledger.stage = stage;
       // A poor plan takes what the linear model says.
@@ -371,13 +379,9 @@ class Diagnoser {
     d_.amplitudes = alone.amplitudes;
     d_.diagnosis.gain =
         infer::held_out_gain(d_.model, d_.diagnosis.budget, infer::parts_of(d_.diagnosis.fitted, {left}), d_.options);
-    const auto one = static_cast<std::size_t>(plan_.step_seeds) * plan_.cases;
-    int steps = plan_.steps;
-    while (steps > 0 && !pays_for(static_cast<std::size_t>(1 + steps) * one + plan_.confirmation_runs(0))) --steps;
-    fit = fit_by_runs(d_, *simulator_, alone, steps, plan_.step_seeds);
-    std::vector<infer::Part> parts = infer::parts_of(d_.diagnosis.posterior, {left});
-    parts[0].amplitude = fit.model.amplitudes[0];
-    d_.diagnosis.after = check_runs(d_, fit, parts, static_cast<std::size_t>(plan_.step_seeds));
+    fit = fit_by_runs(d_, *simulator_, alone, steps_paid(plan_.steps), plan_.step_seeds);
+    d_.diagnosis.after = check_runs(d_, fit, static_cast<std::size_t>(plan_.step_seeds));
+    d_.u_after = fit.model.u;
     if (d_.diagnosis.after.p >= d_.options.fit_above) return true;
     withdraw("of two probable causes one keeps no strength when it is run, and the other does not fit the data alone");
     return false;
@@ -386,7 +390,7 @@ class Diagnoser {
   /// What is not in the library, as a shape of the observables and, where the study asks for it, as a generic term.
   void describe_unknown() {
     d_.terms = infer::find_terms(d_.model, d_.bank, d_.diagnosis, d_.options);
-    keep_to_plan();
+    keep_to_plan(0);
     d_.generic = fit_generic_term(study_, d_, *simulator_, plan_);
   }
 

@@ -66,9 +66,9 @@ TEST_CASE("runs where the data are pass the fit test, however far the plane is f
   Fixture f;
   const RealFit fit = fit_by_runs(f.d, *f.simulator, {f.at(0.6, 0.15), {}, {}}, 0, 5);
   f.d.model.base.array() += 100;
-  CHECK(check_runs(f.d, fit, {}, 5).p > 0.01);
+  CHECK(check_runs(f.d, fit, 5).p > 0.01);
   const RealFit far = fit_by_runs(f.d, *f.simulator, {f.at(0.3, 0.3), {}, {}}, 0, 5);
-  CHECK(check_runs(f.d, far, {}, 5).p < 0.01);
+  CHECK(check_runs(f.d, far, 5).p < 0.01);
 }
 
 TEST_CASE("an extension is confirmed where its runs are nearer to the held-out data, and not otherwise") {
