@@ -66,10 +66,9 @@ Parts most_probable(const Residuals& residuals) {
 }  // namespace
 
 Matrix SeedScatter::block(const Block& block, std::size_t number) const {
-  const Parts parts{white[number], common[number], correlation.empty() ? 0 : correlation[number], 0};
-  const Matrix c = covariance_of(parts, static_cast<int>(block.sd.size()));
-  if (profile.empty()) return c;
-  return profile[number].asDiagonal() * c * profile[number].asDiagonal();
+  const Parts parts{white[number], common[number], correlation[number], 0};
+  return profile[number].asDiagonal() * covariance_of(parts, static_cast<int>(block.sd.size())) *
+         profile[number].asDiagonal();
 }
 
 Matrix SeedScatter::covariance(const Observables& observables) const {

@@ -11,8 +11,8 @@ namespace calx::infer {
 /// Per block, in declared measurement sd. A block of one number has only the white part.
 struct SeedScatter {
   std::vector<double> white, common;
-  std::vector<double> correlation = {};  // lag-one, of the white part along the index; empty: none
-  std::vector<Vector> profile = {};      // sd of each number over the declared one, mean square one; empty: equal
+  std::vector<double> correlation;  // lag-one, of the white part along the index
+  std::vector<Vector> profile;      // sd of each number over the declared one, mean square one
 
   Matrix block(const Block& block, std::size_t number) const;  // of one run, in squared declared sd
   Matrix covariance(const Observables& observables) const;     // of one run, in squared units of the observables

@@ -28,6 +28,11 @@ inline std::vector<Matrix> small_signatures() {
   return all;
 }
 
+/// White along the series and with a common mode there.
+inline SeedScatter small_scatter(double white, double common) {
+  return {{white, white}, {common, 0}, {0, 0}, {Vector::Ones(30), Vector::Ones(1)}};
+}
+
 /// The plane itself: base zero, one nuisance that shifts the single number by 3 per prior sd.
 inline LinearModel small_model() {
   LinearModel model;
@@ -43,7 +48,7 @@ inline LinearModel small_model() {
     model.effects.push_back(e);
   }
   model.effects[0].one_sided = true;
-  model.scatter = {{0.5, 0.5}, {0.2, 0}};
+  model.scatter = small_scatter(0.5, 0.2);
   model.base_weight = 0.1;
   return model;
 }

@@ -7,7 +7,7 @@ using namespace calx::infer;
 
 namespace {
 
-const SeedScatter runs_scatter{{0.7, 0.7}, {0.5, 0}};
+const SeedScatter runs_scatter = small_scatter(0.7, 0.5);
 
 Vector noise_of(calx::Random& random) {
   Vector v(31);
