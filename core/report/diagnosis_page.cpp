@@ -33,9 +33,7 @@ std::string perhaps_beside(const DiagnosisResult& d) {
              share_html(c.probability) + ")";
   if (!out.empty()) out += ".";
   for (const DiagnosisResult::Cause& c : d.causes)
-    if (c.is_dropped)
-      out += " " + names_html({c.label}) +
-             " looked likely beside it, but keeps no strength beyond its error when it is run.";
+    if (c.is_dropped) out += " " + names_html({c.label}) + " looked likely beside it, but adds nothing when it is run.";
   return out;
 }
 

@@ -195,6 +195,11 @@ infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, std::siz
   return infer::check_fit(d.model, d.bank, systematic, view.noise, view.y - fit.figures, d.options, 2);
 }
 
+double held_out_score(const StudyDiagnosis& d, const Vector& figures, std::size_t seeds) {
+  const infer::View& hold = d.diagnosis.budget.hold;
+  return -0.5 * infer::Metric(error_of_means(d, seeds) + hold.noise, hold.y - figures).residual().squaredNorm();
+}
+
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,
                              const RealModel& extended, std::size_t seeds) {
   Confirmation c;
@@ -203,10 +208,7 @@ Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator,
   const Vector after =
       simulator.run_settings(settings_of(d, extended, confirmation_seeds, seeds), true).rowwise().mean();
   c.before = list_of(before), c.after = list_of(after);
-  const infer::View& hold = d.diagnosis.budget.hold;
-  const Matrix error = error_of_means(d, seeds) + hold.noise;
-  c.log_score = 0.5 * (infer::Metric(error, hold.y - before).residual().squaredNorm() -
-                       infer::Metric(error, hold.y - after).residual().squaredNorm());
+  c.log_score = held_out_score(d, after, seeds) - held_out_score(d, before, seeds);
   const infer::Observables& all = d.model.observables;
   c.error_before = held_out_error(all, before), c.error_after = held_out_error(all, after);
 

@@ -31,6 +31,9 @@ RealFit fit_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const Re
 /// the effects are held to be right within their tolerance.
 infer::FitCheck check_runs(const StudyDiagnosis& d, const RealFit& fit, std::size_t seeds);
 
+/// Log score of the held-out data, but for a constant, given means of so many runs.
+double held_out_score(const StudyDiagnosis& d, const infer::Vector& figures, std::size_t seeds);
+
 /// Means of runs of both models with new seeds, scored on the held-out campaign.
 Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator, const RealModel& old,
                              const RealModel& extended, std::size_t seeds);

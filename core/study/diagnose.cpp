@@ -27,10 +27,9 @@ int self_test_studies(std::size_t budget) { return static_cast<int>(std::clamp<s
 /// In scales of the cause.
 const std::vector<double> self_test_strengths = {0.5, 1, 2, 4};
 constexpr std::size_t self_test_causes = 3;
-constexpr int most_steps = 8;     // of the fit by runs of a cause that the fit test refuses
-constexpr double beyond = 1.645;  // sd of a strength: the lower end of its 90 % interval
-constexpr double reach = 2.5;     // prior sd of a parameter beyond which no base run is made
-constexpr int most_looks = 2;     // beyond the first, where it leaves the verdict open
+constexpr int most_steps = 8;  // of the fit by runs of a cause that the fit test refuses
+constexpr double reach = 2.5;  // prior sd of a parameter beyond which no base run is made
+constexpr int most_looks = 2;  // beyond the first, where it leaves the verdict open
 
 class Diagnoser {
  public:
@@ -344,7 +343,7 @@ class Diagnoser {
     try {
       const RealModel old_fit = fitted("old case fitted by runs", old).model;
       RealFit fit = fitted("extended case fitted by runs", named);
-      if (!keep_strong(fit)) return;
+      if (!keep_partner(fit)) return;
       d_.ledger.stage = "confirmation with new seeds";
       d_.confirmation = confirm_by_runs(d_, *simulator_, old_fit, fit.model, plan_.confirmed);
       d_.u_before = old_fit.u, d_.u_after = fit.model.u;
@@ -360,30 +359,32 @@ class Diagnoser {
       check_name();
   }
 
-  /// Of two causes each has to keep a strength beyond its 90 % interval when it is run: what makes up for the linear
-  /// model of the other does not. Without it the other has to fit alone. False where the name is withdrawn.
-  bool keep_strong(RealFit& fit) {
-    if (d_.explained.size() != 2 || fit.sd.size() != 2) return true;
-    const auto strength = [&](std::size_t k) {
-      return fit.model.amplitudes[k].norm() / std::max(fit.sd[k], d_.diagnosis.posterior.fits[d_.explained[k]].sd);
+  /// Of two causes the weaker one has to earn its place when they are run, too: what makes up for the linear model of
+  /// the other adds nothing to it. Without it the other has to fit alone. False where the name is withdrawn.
+  bool keep_partner(RealFit& fit) {
+    // A poor plan takes what the linear model says.
+    if (d_.explained.size() != 2 || plan_.steps == 0) return true;
+    infer::Diagnosis& v = d_.diagnosis;
+    const auto gain_of = [&](std::size_t e) {
+      return infer::held_out_gain(d_.model, v.budget, infer::parts_of(v.fitted, {e}), d_.options);
     };
-    const std::size_t weak = strength(0) < strength(1) ? 0 : 1;
-    if (strength(weak) > beyond) return true;
-    d_.notes.push_back(d_.model.effects[d_.explained[weak]].id +
-                       " was probable as a second cause, but keeps no strength beyond its error when it is run");
-    RealModel alone = fit.model;
-    const std::size_t left = alone.effects[1 - weak];
+    const infer::Gain gains[] = {gain_of(d_.explained[0]), gain_of(d_.explained[1])};
+    const std::size_t weak = gains[0].log_score < gains[1].log_score ? 0 : 1, left = d_.explained[1 - weak];
+    const RealModel start{fit.model.u, {left}, {fit.model.amplitudes[1 - weak]}};
+    const RealFit alone = fit_by_runs(d_, *simulator_, start, steps_paid(plan_.steps), plan_.step_seeds);
+    const auto seeds = static_cast<std::size_t>(plan_.step_seeds);
+    if (held_out_score(d_, fit.figures, seeds) - held_out_score(d_, alone.figures, seeds) >= d_.options.partner_above)
+      return true;
     d_.dropped = {d_.explained[weak]};
-    alone.effects = {left}, alone.amplitudes = {alone.amplitudes[1 - weak]};
-    d_.explained = d_.diagnosis.named = {left};
-    d_.amplitudes = alone.amplitudes;
-    d_.diagnosis.gain =
-        infer::held_out_gain(d_.model, d_.diagnosis.budget, infer::parts_of(d_.diagnosis.fitted, {left}), d_.options);
-    fit = fit_by_runs(d_, *simulator_, alone, steps_paid(plan_.steps), plan_.step_seeds);
-    d_.diagnosis.after = check_runs(d_, fit, static_cast<std::size_t>(plan_.step_seeds));
-    d_.u_after = fit.model.u;
-    if (d_.diagnosis.after.p >= d_.options.fit_above) return true;
-    withdraw("of two probable causes one keeps no strength when it is run, and the other does not fit the data alone");
+    d_.notes.push_back(d_.model.effects[d_.explained[weak]].id +
+                       " was probable as a second cause, but adds nothing when it is run");
+    d_.explained = v.named = {left};
+    d_.amplitudes = alone.model.amplitudes, d_.u_after = alone.model.u;
+    v.gain = gains[1 - weak];
+    v.after = check_runs(d_, alone, seeds);
+    fit = alone;
+    if (v.after.p >= d_.options.fit_above) return true;
+    withdraw("of two probable causes one adds nothing when it is run, and the other does not fit the data alone");
     return false;
   }
 

@@ -159,7 +159,7 @@ TEST_CASE("causes that may act beside the named one are told") {
   j["causes"][1]["dropped"] = true;
   const std::string page = page_of(j);
   CHECK_FALSE(has(page, "Perhaps at work beside it"));
-  CHECK(has(page, "<code>calx.worn-pocket</code> looked likely beside it, but keeps no strength"));
+  CHECK(has(page, "<code>calx.worn-pocket</code> looked likely beside it, but adds nothing when it is run"));
 }
 
 TEST_CASE("two causes by one effect are told apart by their parameter") {
