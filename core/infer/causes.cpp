@@ -173,7 +173,7 @@ Matrix noise_columns(const LinearModel& model, std::size_t effect, const Options
     out.conservativeResize(Eigen::NoChange, out.cols() + smooth.cols() + 1);
     out.rightCols(smooth.cols() + 1).setZero();
     const SeedScatter& scatter = model.scatter;
-    const Vector own = sd * all.blocks[b].sd.cwiseProduct(scatter.profile[b]);
+    const Vector own = (sd * all.blocks[b].sd).cwiseProduct(scatter.profile[b]);
     // Scatter that is correlated along the index has more of itself in what is smooth.
     const Matrix rest = autocorrelation_matrix(n, scatter.correlation[b]);
     for (Eigen::Index k = 0; k < smooth.cols(); ++k)
