@@ -214,9 +214,9 @@ class Diagnose(CalxTest):
         noise = random.Random(3)
         for number, name in enumerate(("fit", "hold")):
             lines = ["scan,x_mm,y_mm,z_mm"]
-            for scan in range(4):
+            for scan in range(8):
                 sets = {"/seed": 5000 + 100 * number + scan, "/time/end": 0.3,
-                        "/effects": [{"effect": "acme.wide-slot", "on": {"floor": "floor"}, "parameters": {"widening": 0.007}}]}
+                        "/effects": [{"effect": "acme.wide-slot", "on": {"floor": "floor"}, "parameters": {"widening": 0.0055}}]}
                 self.runs("drain.json", "-o", "world", "--overwrite", "--plugin-path", "acme",
                           *(w for k, v in sets.items() for w in ("--set", f"{k}={json.dumps(v)}")))
                 field = json.loads((self.dir / "world" / "fields.json").read_text())["fields"][0]
@@ -242,8 +242,9 @@ class Diagnose(CalxTest):
         # Too much stays where the slot is too narrow: the mean height of the simulation, the first mode, is too high.
         self.assertGreater(seen["before"][0], seen["fit"][0])
         self.assertGreater(seen["z"], 3)
+        # Some 190 balls leave a rough surface: over six seeds the slot came first with 0.91 to 0.95, and once was not named.
         self.assertEqual(found["causes"][0]["id"], "acme.wide-slot", found["sentence"])
-        self.assertGreater(found["causes"][0]["probability"], 0.9)
+        self.assertGreater(found["causes"][0]["probability"], 0.75)
         # What the scan holds beyond the map is refused, with the place, and nothing is lost.
         text = (self.dir / "fit.csv").read_text()
         (self.dir / "fit.csv").write_text(text + "0,400,8,3\n")
