@@ -263,10 +263,14 @@ std::string yield_locus(Page& page, const SensorSeries& s, const StepRows& rows)
 
 }  // namespace
 
+bool Sections::is_lab_kind(const std::string& kind) {
+  return kind == "cell-density" || kind == "wall-friction" || kind == "yield-locus";
+}
+
 void Sections::lab() {
   std::string out;
   for (const SensorSeries& s : run.sensors) {
-    if (s.kind != "cell-density" && s.kind != "wall-friction" && s.kind != "yield-locus") continue;
+    if (!is_lab_kind(s.kind)) continue;
     drawn.insert(s.name);
     const StepRows rows(s);
     if (rows.count() == 0)

@@ -156,6 +156,12 @@ std::string Sections::sensor_charts(const SensorSeries& s, const std::set<std::s
   return out;
 }
 
+std::string Sections::without_sensor(const std::string& sentence) const {
+  const bool rig = std::any_of(run.sensors.begin(), run.sensors.end(),
+                               [](const SensorSeries& s) { return is_flow_kind(s.kind) || is_lab_kind(s.kind); });
+  return rig ? "" : html_absent(sentence);
+}
+
 void Sections::dosing() {
   std::string out;
   if (figures.fill && !figures.fill->time.empty() && figures.fill->column("mass_kg") >= 0) {
@@ -170,21 +176,21 @@ void Sections::dosing() {
     chart.caption = sensor_caption(*figures.fill) + (chart.marks.empty() ? "" : " Dashed: events of the case.");
     out += page.chart(chart);
   } else {
-    out += html_absent(figures.fill ? "No mass against time: " + figures.fill->missing + "."
-                                    : "No mass against time: the case has no sensor of kind mass.");
+    out += figures.fill ? html_absent("No mass against time: " + figures.fill->missing + ".")
+                        : without_sensor("No mass against time: the case has no sensor of kind mass.");
   }
   if (!figures.cycles.cycle.empty()) {
     out += cycle_charts(page, figures.cycles);
   } else {
     const SensorSeries* s = run.sensor_of("cycle-mass");
-    out += html_absent(!s                ? "No masses per cycle: the case has no sensor of kind cycle-mass."
-                       : s->time.empty() ? "No masses per cycle: " + s->missing + "."
-                                         : "No cycle is completed yet.");
+    out += !s ? without_sensor("No masses per cycle: the case has no sensor of kind cycle-mass.")
+              : html_absent(s->time.empty() ? "No masses per cycle: " + s->missing + "." : "No cycle is completed yet.");
   }
   if (const SensorSeries* s = run.sensor_of("cycle-mass")) drawn.insert(s->name);
   for (const SensorSeries& s : run.sensors) {
     if (s.kind == "flow") out += sensor_charts(s, {"particles_1"});
   }
+  if (out.empty()) return;
   page.section(
       "dosing", "Dosing", "Dosing",
       "<p class=\"note screen\">Drag across a chart to enlarge that stretch; a double click shows all of it.</p>" +
@@ -261,10 +267,10 @@ void Sections::pile() {
     out += sensor_charts(s, {"sectors_1", "bins_1", "sd_deg", "left_sd_deg", "right_sd_deg"});
   }
   if (out.empty()) {
-    out = html_absent(
+    out = without_sensor(
         "No pile: the case has no sensor of kind height-map or angle-of-repose, or none has given a result yet.");
   }
-  page.section("pile", "Pile", "Pile", grid(out));
+  if (!out.empty()) page.section("pile", "Pile", "Pile", grid(out));
 }
 
 void Sections::loads() {
@@ -272,8 +278,8 @@ void Sections::loads() {
   for (const SensorSeries& s : run.sensors) {
     if (s.kind == "part-load") out += sensor_charts(s);
   }
-  if (out.empty()) out = html_absent("No loads on parts: the case has no sensor of kind part-load.");
-  page.section("loads", "Loads on parts", "Loads", grid(out));
+  if (out.empty()) out = without_sensor("No loads on parts: the case has no sensor of kind part-load.");
+  if (!out.empty()) page.section("loads", "Loads on parts", "Loads", grid(out));
 }
 
 void Sections::other_sensors() {

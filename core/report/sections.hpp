@@ -34,6 +34,10 @@ struct Sections {
   std::vector<ChartMark> event_marks() const;
   /// Sensors of that kind have their curves in flow().
   static bool is_flow_kind(const std::string& kind);
+  /// The same for lab().
+  static bool is_lab_kind(const std::string& kind);
+  /// What the case has no sensor for, as a hint; nothing for a rig, whose own plots are what it is for.
+  std::string without_sensor(const std::string& sentence) const;
 };
 
 }  // namespace calx

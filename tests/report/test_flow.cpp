@@ -72,6 +72,9 @@ TEST_CASE("a discharge has its mass, its fitted middle and Beverloo's line, and 
   CHECK(has(page, "longest pause 20 ms"));
   CHECK(has(page, "for grains of 2.77 mm at a bulk density of 1210 kg/m^3: 81.5 g/s, ratio 0.739."));
   CHECK(has(page, "href=\"#flow\""));
+  // A rig has no dosing, pile or loads, and says nothing of them.
+  for (const char* empty : {"No mass against time", "No masses per cycle", "No pile", "No loads", "href=\"#dosing\""})
+    CHECK_FALSE(has(page, empty));
 }
 
 TEST_CASE("a pile has its profile, flank and sectors; the angle of the last row counts, not an older one") {
