@@ -105,6 +105,14 @@ std::string DiagnosisSections::held_out_charts() {
 
 std::string DiagnosisSections::confirmation() const {
   const auto& c = d.confirmation;
+  if (!c.done && d.generic.accepted)
+    return "<ul class=\"checks\">" +
+           html_check(
+               "good", "The improvement by the generic term is there.",
+               "The old case and that of section 3 were really run with new seeds: typical error on held-out data " +
+                   number_html(d.generic.error_before, 2) + " sd before, " + number_html(d.generic.error_after, 2) +
+                   " sd with the term.") +
+           "</ul>";
   if (!c.done)
     return html_absent(d.verdict == "named" ? "The extended case was not run with new seeds."
                                             : "There is no extended case to run.");

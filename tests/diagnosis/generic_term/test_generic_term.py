@@ -84,6 +84,8 @@ class GenericTerm(unittest.TestCase):
         self.assertIn("generic.grain-pull", run("check", out / d["extension"]))
         page = (out / "report.html").read_text()
         self.assertIn("A generic term, which is no named cause", page)
+        self.assertIn("The improvement by the generic term is there.", page)
+        self.assertNotIn("There is no extended case to run.", page)
 
     def test_a_fault_of_the_scale_that_looks_like_slow_flow_is_not_named(self):
         # A step of the scale that is not in the library: a pull between grains may describe it, as less flows; no cause is named.
