@@ -344,6 +344,7 @@ class Diagnoser {
       const RealModel old_fit = fitted("old case fitted by runs", old).model;
       RealFit fit = fitted("extended case fitted by runs", named);
       if (!keep_partner(fit)) return;
+      { const auto chk = check_runs(d_, fit, (std::size_t)plan_.step_seeds); std::fprintf(stderr,"CHECK steps %d total %.4g structured %.4g p %.4g lin %.4g\n", plan_.steps, chk.total, chk.structured, chk.p, d_.diagnosis.after.p); }
       d_.ledger.stage = "confirmation with new seeds";
       d_.confirmation = confirm_by_runs(d_, *simulator_, old_fit, fit.model, plan_.confirmed);
       d_.u_before = old_fit.u, d_.u_after = fit.model.u;
