@@ -97,4 +97,14 @@ Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& op
   return d;
 }
 
+void calibrate(Diagnosis& d, const Options& options) {
+  for (std::size_t e = 0; e < d.probability.size(); ++e)
+    d.probability[e] = options.calibration(d.posterior.inclusion[e]);
+  const auto doubted = [&](std::size_t e) { return d.probability[e] <= options.name_above; };
+  if (std::none_of(d.named.begin(), d.named.end(), doubted)) return;
+  d.verdict = Verdict::ambiguous;
+  d.reason = "the best cause is not probable enough once the self-test has corrected what is stated";
+  d.named.clear();
+}
+
 }  // namespace calx::infer

@@ -46,4 +46,8 @@ void rebase(LinearModel& model, const Vector& u, int seeds, Simulator& simulator
 /// the fit test does not refuse it, and it predicts the held-out campaign better than the recalibrated old model.
 Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& options);
 
+/// States the probabilities by options.calibration, as a self-test learnt it after the verdict. A name that is then no
+/// longer above options.name_above is withdrawn.
+void calibrate(Diagnosis& d, const Options& options);
+
 }  // namespace calx::infer

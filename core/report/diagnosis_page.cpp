@@ -85,6 +85,9 @@ Banner ambiguous_banner(const DiagnosisResult& d) {
   add(!causes.empty(), (causes.size() == 1 ? "the cause " : "the causes ") + names_html(causes));
   add(none, "nothing wrong at all");
   add(unlisted, "something that is not in the library");
+  // One alone is left where it was found wanting.
+  if (d.set.size() == 1 && causes.size() == 1)
+    left = "Likeliest is " + names_html(causes) + ", but not sure enough to be named";
   b.meaning += left.empty() ? "" : left + ".";
   b.next = "Do not change the case yet: a wrong cause built in makes every later prediction worse. " +
            (d.next.empty() ? std::string("Measure something else: section 2 says what would tell the causes apart.")
@@ -156,7 +159,8 @@ void DiagnosisSections::header() {
                      "than with the old model; needed: " + format_number(std::exp(d.gain_needed), 2) + " times",
                      d.gain >= d.gain_needed ? "good" : "bad");
   if (d.confirmation.done)
-    out += html_card("runs with new seeds", d.confirmation.passed ? "confirm it" : "do not confirm",
+    out += html_card("runs with new seeds",
+                     d.confirmation.passed && !d.confirmation.contradicted ? "confirm it" : "do not confirm",
                      format_number(d.confirmation.seeds) + " of each case", d.confirmation.passed ? "good" : "bad");
   page.header(out + cost_card(d) + "</div>");
 }

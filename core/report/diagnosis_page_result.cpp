@@ -178,6 +178,7 @@ void read_worth(Result& d, const Json& j) {
   c.seeds = number(runs, "seeds"), c.gain = number(runs, "held_out_log_score");
   c.error_before = number(runs, "error_before"), c.error_after = number(runs, "error_after");
   c.agreement_p = number(runs, "agreement_p");
+  c.error_foretold = number(runs, "error_foretold"), c.contradicted = flag(runs, "contradicted");
   c.before = numbers(member(runs, "before")), c.after = numbers(member(runs, "after"));
   const Json& test = member(j, "self_test");
   d.controls = number(test, "controls", 0), d.controls_named = number(test, "controls_named", 0);

@@ -91,8 +91,9 @@ struct DiagnosisResult {
   double gain = unknown, gain_sd = unknown, gain_needed = unknown;
   bool held_out = true, split_repeats = false;
   struct {
-    bool done = false, passed = false;
-    double seeds = unknown, gain = unknown, error_before = unknown, error_after = unknown, agreement_p = unknown;
+    bool done = false, passed = false, contradicted = false;
+    double seeds = unknown, gain = unknown, error_before = unknown, error_after = unknown, error_foretold = unknown,
+           agreement_p = unknown;
     std::vector<double> before, after;  // over all observables, one after the other
   } confirmation;
   double controls = 0, controls_named = 0;

@@ -118,10 +118,16 @@ std::string DiagnosisSections::confirmation() const {
                                             : "There is no extended case to run.");
   std::string out = "<p>The old and the extended case were really run, " + format_number(c.seeds) +
                     " times each with seeds that the diagnosis had not used.</p><ul class=\"checks\">";
-  out += html_check(c.passed ? "good" : "bad", c.passed ? "The improvement is there." : "The improvement is not there.",
+  out += html_check(c.passed && !c.contradicted ? "good" : "bad",
+                    !c.passed        ? "The improvement is not there."
+                    : c.contradicted ? "The improvement is not what was foretold."
+                                     : "The improvement is there.",
                     "Typical error on held-out data " + number_html(c.error_before) + " sd with the old case, " +
-                        number_html(c.error_after) + " sd with the extended one; the held-out data are " +
-                        likelier_html(c.gain) + " with it.");
+                        number_html(c.error_after) + " sd with the extended one" +
+                        (c.contradicted ? " instead of " + number_html(c.error_foretold) +
+                                              " sd: the forecasts that chose the cause are in doubt"
+                                        : "") +
+                        "; the held-out data are " + likelier_html(c.gain) + " with it.");
   if (std::isfinite(c.agreement_p)) {
     const bool agrees = c.agreement_p >= 0.05;
     out += html_check(

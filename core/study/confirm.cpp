@@ -13,7 +13,8 @@ namespace {
 using infer::Matrix;
 using infer::Vector;
 
-constexpr double least_improvement = 0.05;  // of the held-out error, for an extension to be worth having
+constexpr double least_improvement = 0.05;   // of the held-out error, for an extension to be worth having
+constexpr double contradicted_below = 1e-3;  // p of the difference between runs and algebra
 constexpr std::uint64_t fit_seeds = 600, confirmation_seeds = 700;  // after the thousands of the study's seed
 constexpr double prior_strength = 4;  // sd of a strength, in scales of its effect: as wide as the widest prior, doubled
 constexpr double longest_step = 1;    // of a parameter, in prior sd
@@ -221,6 +222,9 @@ Confirmation confirm_by_runs(const StudyDiagnosis& d, StudySimulator& simulator,
       infer::freedom_of(m, parts, d.options).own;
   const double square = infer::Metric(spread, after - foretold).residual().squaredNorm();
   c.agreement = 0.5 * std::erfc(normal_score(square, after.size()) / std::sqrt(2.0));
+  c.error_foretold = held_out_error(all, foretold);
+  // Causes were weighed by the algebra alone: where it fails at the place that it chose, its choice may fail, too.
+  c.contradicted = c.agreement < contradicted_below && c.error_after > c.error_foretold;
 
   // Half of what the algebra foretold is enough, since runs of a few seeds scatter.
   const double needed = std::min(d.options.gain_above, 0.5 * d.diagnosis.gain.log_score);

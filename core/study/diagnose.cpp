@@ -247,8 +247,7 @@ class Diagnoser {
     d_.self_test =
         infer::self_test(d_.model, d_.bank, order, self_test_strengths, self_test_studies(study_.budget), d_.options);
     d_.options.calibration = d_.self_test.calibration;
-    for (std::size_t e = 0; e < v.probability.size(); ++e)
-      v.probability[e] = d_.options.calibration(v.posterior.inclusion[e]);
+    infer::calibrate(v, d_.options);
 
     std::vector<Vector> amplitudes;
     for (const infer::SingleFit& f : v.posterior.fits) amplitudes.push_back(f.amplitude);
@@ -344,7 +343,6 @@ class Diagnoser {
       const RealModel old_fit = fitted("old case fitted by runs", old).model;
       RealFit fit = fitted("extended case fitted by runs", named);
       if (!keep_partner(fit)) return;
-      { const auto chk = check_runs(d_, fit, (std::size_t)plan_.step_seeds); std::fprintf(stderr,"CHECK steps %d total %.4g structured %.4g p %.4g lin %.4g\n", plan_.steps, chk.total, chk.structured, chk.p, d_.diagnosis.after.p); }
       d_.ledger.stage = "confirmation with new seeds";
       d_.confirmation = confirm_by_runs(d_, *simulator_, old_fit, fit.model, plan_.confirmed);
       d_.u_before = old_fit.u, d_.u_after = fit.model.u;
@@ -354,7 +352,11 @@ class Diagnoser {
       if (e.fault() != Fault::numerics && e.fault() != Fault::settings) throw;
       return withdraw("the extended case could not be run: " + std::string(e.what()));
     }
-    if (!d_.confirmation.passed)
+    if (d_.confirmation.contradicted)
+      withdraw(
+          "the extended case, run with new seeds, lies farther from the data than was foretold, so that what chose it "
+          "among the causes is in doubt");
+    else if (!d_.confirmation.passed)
       withdraw("the extended case, run with new seeds, does not show the improvement that was foretold");
     else
       check_name();

@@ -22,6 +22,8 @@ struct Confirmation {
   double log_score = 0;  // ln of the likelihood ratio of the held-out data, extended over old, at the means of the runs
   double error_before = 0, error_after = 0;  // root mean square of held-out residuals, in sd
   double agreement = 1;                      // p of the difference between runs and algebra
+  double error_foretold = 0;                 // of the algebra, at the place of the extended case
+  bool contradicted = false;                 // runs are not where the algebra put them, and farther from the data
   std::vector<double> before, after;         // means of the runs, rows of the blocks
 };
 

@@ -112,7 +112,7 @@ class DiagnosisText {
           left += (left.empty() ? "" : ", ") + std::string(k < effects_    ? d_.model.effects[k].id
                                                            : k == effects_ ? "nothing"
                                                                            : "something outside the library");
-        out += " Left are: " + left + ".";
+        out += (v_.set.size() > 1 ? " Left are: " : " Likeliest is ") + left + ".";
         return out + best_next();
       }
     }
@@ -344,6 +344,8 @@ class DiagnosisText {
             {"held_out_log_score", c.log_score},
             {"error_before", c.error_before},
             {"error_after", c.error_after},
+            {"error_foretold", c.error_foretold},
+            {"contradicted", c.contradicted},
             {"agreement_p", c.agreement},
             {"before", c.before},
             {"after", c.after}};

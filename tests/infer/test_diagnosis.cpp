@@ -94,6 +94,23 @@ TEST_CASE("nothing is not said to be wrong only where nothing is left as an expl
   CHECK(diagnosed(measured(Vector::Zero(31), 1), options).verdict == Verdict::none);
 }
 
+TEST_CASE("a name that the self-test finds not to be probable enough is withdrawn, another one stays") {
+  Options options;
+  const LinearModel model = measured(3 * small_signatures()[1], 9);
+  Diagnosis d = diagnosed(model, options);
+  REQUIRE(d.named == std::vector<std::size_t>{1});
+  options.calibration = {{0.5, 1}, {0.4, 0.95}};
+  calibrate(d, options);
+  CHECK(d.named == std::vector<std::size_t>{1});
+  CHECK(d.probability[1] > 0.9);
+  CHECK(d.probability[1] < 0.951);
+  options.calibration = {{0.5, 1}, {0.4, 0.89}};
+  calibrate(d, options);
+  CHECK(d.verdict == Verdict::ambiguous);
+  CHECK(d.named.empty());
+  CHECK(d.reason.find("self-test") != std::string::npos);
+}
+
 TEST_CASE("the same seed gives the same numbers") {
   const LinearModel model = measured(small_signatures()[1], 4);
   const Diagnosis a = diagnosed(model), b = diagnosed(model);

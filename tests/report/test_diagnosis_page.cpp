@@ -66,6 +66,23 @@ std::string error_of(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("runs that contradict the forecast are said to, and the lone cause that is left is no more than likeliest") {
+  json j = sample_diagnosis();
+  CHECK(has(page_of(j), "The improvement is there."));
+  CHECK(has(page_of(j), "confirm it"));
+  const json runs = j["confirmation"];
+  j = with_verdict("ambiguous");
+  j["set"] = {j["causes"][0]["id"]};
+  j["confirmation"] = runs;
+  j["confirmation"]["contradicted"] = true, j["confirmation"]["error_foretold"] = 0.321;
+  const std::string page = page_of(j);
+  CHECK(has(page, "The improvement is not what was foretold."));
+  CHECK(has(page, "instead of 0.321 sd"));
+  CHECK(has(page, "do not confirm"));
+  CHECK(has(page, "Likeliest is "));
+  CHECK_FALSE(has(page, "Still possible"));
+}
+
 TEST_CASE("the error in words follows simulation less measurement") {
   CHECK(error_html(1.5, "g") == "1.5\xc2\xa0g too much");
   CHECK(error_html(-0.77, "g") == "0.77\xc2\xa0g too little");

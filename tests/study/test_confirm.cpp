@@ -87,4 +87,21 @@ TEST_CASE("an extension is confirmed where its runs are nearer to the held-out d
   CHECK_FALSE(confirm_by_runs(f.d, *f.simulator, near, near, 5).passed);
 }
 
+TEST_CASE("runs contradict the algebra where they are elsewhere and farther from the data, not where they are nearer") {
+  Fixture f;
+  const RealModel far{f.at(0.3, 0.3), {}, {}}, near{f.at(0.6, 0.15), {}, {}};
+  CHECK_FALSE(confirm_by_runs(f.d, *f.simulator, far, near, 5).contradicted);
+  f.d.model.base.array() += 100;
+  const Confirmation nearer = confirm_by_runs(f.d, *f.simulator, far, near, 5);
+  CHECK(nearer.agreement < 1e-3);
+  CHECK(nearer.error_foretold > nearer.error_after);
+  CHECK_FALSE(nearer.contradicted);
+  f.d.model.base.array() -= 100;
+  // The algebra has `near` where the data are, and runs that went elsewhere do not.
+  f.d.model.base += f.d.diagnosis.budget.hold.y - (f.d.model.base + f.d.model.sensitivities * (far.u - f.d.model.u));
+  const Confirmation farther = confirm_by_runs(f.d, *f.simulator, near, far, 5);
+  CHECK(farther.error_foretold < 0.1);
+  CHECK(farther.contradicted);
+}
+
 }  // namespace calx

@@ -80,7 +80,7 @@ std::string effect(const std::string& id) {
 
 /// The study of a slot hopper in which the first effect acts, bend and all, measured twice.
 struct Fixture {
-  explicit Fixture(double second_early) : executor(scratch / "runs") {
+  explicit Fixture(double second_early, double bend_measured = bend) : executor(scratch / "runs") {
     executor.second_early = second_early;
     std::filesystem::create_directories(scratch / "acme");
     std::ofstream(scratch / "acme/acme.plugin.json")
@@ -94,7 +94,8 @@ struct Fixture {
       std::string values;
       for (int k = 0; k < places; ++k) {
         const auto here = static_cast<std::size_t>(k);
-        const double y = mass(k, 0.42) + strength * first[here] + bend * second[here] + noise * random.normal();
+        const double y =
+            mass(k, 0.42) + strength * first[here] + bend_measured * second[here] + noise * random.normal();
         values += (k > 0 ? ", " : "") + format_number(y);
       }
       observables += std::string(observables.empty() ? "" : ", ") + R"({"name": "drains, )" + use +
@@ -157,6 +158,19 @@ TEST_CASE("a second cause that is there when it is run is kept") {
   REQUIRE(d.amplitudes.size() == 2);
   CHECK(d.amplitudes[1][0] == doctest::Approx(bend / 0.5).epsilon(0.15));
   CHECK(d.ledger.runs.size() <= d.ledger.planned);
+}
+
+TEST_CASE("a cause is not named where runs with new seeds are elsewhere than foretold and farther from the data") {
+  Fixture f(0, 0);
+  f.executor.late_bend = 0;
+  CHECK(names(diagnose_study(f.study, f.executor, {})) == std::vector<std::string>{"acme.first"});
+  f.executor.late_bend = bend;
+  const StudyDiagnosis d = diagnose_study(f.study, f.executor, {});
+  CHECK(d.diagnosis.verdict == infer::Verdict::ambiguous);
+  CHECK(names(d).empty());
+  CHECK(d.confirmation.passed);
+  CHECK(d.confirmation.contradicted);
+  CHECK(d.diagnosis.reason.find("farther from the data than was foretold") != std::string::npos);
 }
 
 }  // namespace calx
