@@ -21,6 +21,7 @@ import datetime
 import json
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 import tempfile
@@ -199,12 +200,18 @@ def one(options, kind, number):
         print(json.dumps(line), flush=True)
 
 
+def setting(r):
+    """Point of a result, with the friction, rolling friction and pellets of a drum, which are choices."""
+    chosen = re.search(r"--friction (\S+) --rolling-friction (\S+) --pellets (\S+)", r["command"])
+    return r["point"] + (", friction {}, rolling {}, {} pellets".format(*chosen.groups()) if chosen else "")
+
+
 def table():
-    """One line a point and figure: mean over seeds and steps."""
+    """One line a setting and figure: mean over seeds and steps."""
     groups = {}
     for line in RESULTS.read_text(encoding="ascii").splitlines():
         r = json.loads(line)
-        groups.setdefault((r["point"], r["figure"]), []).append(r)
+        groups.setdefault((setting(r), r["figure"]), []).append(r)
     print("| point | figure | Calx | sd of our seeds (n) | source | sd of its seeds | difference |")
     print("|---|---|---|---|---|---|---|")
     for (point, figure), found in sorted(groups.items()):

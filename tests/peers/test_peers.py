@@ -54,6 +54,13 @@ class Rules(unittest.TestCase):
         found = evaluate.column_density(np.arange(100) + 0.5, r, 1000, 2.0)
         self.assertAlmostEqual(found, 1000 * 95 * np.pi / 6 / (2.0 * (97.01 - 2)), delta=1e-9)
 
+    def test_the_free_choices_of_a_drum_tell_its_results_apart(self):
+        words = "peers.py drum 15 --seed 1 --friction {} --rolling-friction 0.1 --pellets 31100 --spin-up 1.5"
+        names = [peers.setting({"point": "drum 15", "command": words.format(f)}) for f in (0.5, 0.8)]
+        self.assertEqual(names[1], "drum 15, friction 0.8, rolling 0.1, 31100 pellets")
+        self.assertNotEqual(*names)
+        self.assertEqual(peers.setting({"point": "lift 1", "command": "peers.py lift 1 --seed 1"}), "lift 1")
+
     def test_rate_is_the_slope_of_the_middle(self):
         time = np.linspace(0, 10, 1001)
         mass = np.clip(0.05 * (time - 2), 0, 0.3)
