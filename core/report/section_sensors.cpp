@@ -183,8 +183,9 @@ void Sections::dosing() {
     out += cycle_charts(page, figures.cycles);
   } else {
     const SensorSeries* s = run.sensor_of("cycle-mass");
-    out += !s ? without_sensor("No masses per cycle: the case has no sensor of kind cycle-mass.")
-              : html_absent(s->time.empty() ? "No masses per cycle: " + s->missing + "." : "No cycle is completed yet.");
+    out +=
+        !s ? without_sensor("No masses per cycle: the case has no sensor of kind cycle-mass.")
+           : html_absent(s->time.empty() ? "No masses per cycle: " + s->missing + "." : "No cycle is completed yet.");
   }
   if (const SensorSeries* s = run.sensor_of("cycle-mass")) drawn.insert(s->name);
   for (const SensorSeries& s : run.sensors) {
