@@ -117,10 +117,14 @@ std::string row_content(Page& page, const PaperRows& rows, const PaperRow& row, 
   if (!row.assumed.empty()) assumed += "<h3>Assumed</h3>" + list(row.assumed);
   const PaperForm& reduced = run.forms[paper_reduced];
   if (!reduced.reduced.empty()) assumed += "<h3>Reduced</h3>" + list(reduced.reduced);
-  for (const int form : {paper_reduced, paper_full})
-    if (!results.form[form].runs.empty())
-      assumed += folded(std::string("Assumptions of the case, ") + paper_form_name(form),
-                        results.form[form].runs.front().assumptions);
+  for (const int form : {paper_reduced, paper_full}) {
+    if (results.form[form].runs.empty()) continue;
+    std::vector<std::string> set;
+    for (const auto& [pointer, value] : run.forms[form].set) set.push_back(pointer + " = " + value);
+    assumed += folded(std::string("Set for this row, in place of what the case says, ") + paper_form_name(form), set);
+    assumed += folded(std::string("Assumptions of the case, ") + paper_form_name(form),
+                      results.form[form].runs.front().assumptions);
+  }
   text = "<div class=\"two\"><div>" + text + "</div><div class=\"box assumed\">" + assumed + "</div></div>";
   const std::string drawn = paper_drawings(page, row, results.form);
   return drawn.empty() ? text : text + "<div class=\"charts\">" + drawn + "</div>";

@@ -222,6 +222,8 @@ TEST_CASE("the page shows figures, contradictions, assumptions and what was not 
   CHECK(page.find("a recess of 6 mm") != std::string::npos);
   CHECK(page.find("half the time") != std::string::npos);
   CHECK(page.find("of the case") != std::string::npos);
+  CHECK(page.find("Set for this row, in place of what the case says, reduced (1)") != std::string::npos);
+  CHECK(page.find("/time/end = 0.5") != std::string::npos);
   CHECK(page.find("href=\"runs/overfill/reduced/seed-1/report.html\"") != std::string::npos);
   CHECK(page.find("default-src 'none'") != std::string::npos);
   // Rows of the plot from the event on, s as ms and kg as g.
