@@ -101,6 +101,7 @@ void calibrate(Diagnosis& d, const Options& options) {
   for (std::size_t e = 0; e < d.probability.size(); ++e)
     d.probability[e] = options.calibration(d.posterior.inclusion[e]);
   const auto doubted = [&](std::size_t e) { return d.probability[e] <= options.name_above; };
+  if (std::any_of(d.refused.begin(), d.refused.end(), doubted)) d.refused.clear();
   if (std::none_of(d.named.begin(), d.named.end(), doubted)) return;
   d.verdict = Verdict::ambiguous;
   d.reason = "the best cause is not probable enough once the self-test has corrected what is stated";

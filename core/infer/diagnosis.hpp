@@ -47,7 +47,7 @@ void rebase(LinearModel& model, const Vector& u, int seeds, Simulator& simulator
 Diagnosis diagnose(const LinearModel& model, const Bank& bank, const Options& options);
 
 /// States the probabilities by options.calibration, as a self-test learnt it after the verdict. A name that is then no
-/// longer above options.name_above is withdrawn.
+/// longer above options.name_above is withdrawn, and one that the fit test refused no longer stands in `refused`.
 void calibrate(Diagnosis& d, const Options& options);
 
 }  // namespace calx::infer

@@ -109,6 +109,9 @@ TEST_CASE("a name that the self-test finds not to be probable enough is withdraw
   CHECK(d.verdict == Verdict::ambiguous);
   CHECK(d.named.empty());
   CHECK(d.reason.find("self-test") != std::string::npos);
+  d.refused = {1};
+  calibrate(d, options);
+  CHECK(d.refused.empty());
 }
 
 TEST_CASE("the same seed gives the same numbers") {

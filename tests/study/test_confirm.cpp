@@ -97,7 +97,7 @@ TEST_CASE("runs contradict the algebra where they are elsewhere and farther from
   CHECK(nearer.error_foretold > nearer.error_after);
   CHECK_FALSE(nearer.contradicted);
   f.d.model.base.array() -= 100;
-  // The algebra has `near` where the data are, and runs that went elsewhere do not.
+  // The algebra has `far` where the data are; its runs are elsewhere.
   f.d.model.base += f.d.diagnosis.budget.hold.y - (f.d.model.base + f.d.model.sensitivities * (far.u - f.d.model.u));
   const Confirmation farther = confirm_by_runs(f.d, *f.simulator, near, far, 5);
   CHECK(farther.error_foretold < 0.1);
