@@ -159,9 +159,8 @@ void DiagnosisSections::header() {
                      "than with the old model; needed: " + format_number(std::exp(d.gain_needed), 2) + " times",
                      d.gain >= d.gain_needed ? "good" : "bad");
   if (d.confirmation.done)
-    out += html_card("runs with new seeds",
-                     d.confirmation.passed && !d.confirmation.contradicted ? "confirm it" : "do not confirm",
-                     format_number(d.confirmation.seeds) + " of each case", d.confirmation.passed ? "good" : "bad");
+    out += html_card("runs with new seeds", d.confirmation.holds() ? "confirm it" : "do not confirm",
+                     format_number(d.confirmation.seeds) + " of each case", d.confirmation.holds() ? "good" : "bad");
   page.header(out + cost_card(d) + "</div>");
 }
 

@@ -95,6 +95,7 @@ struct DiagnosisResult {
     double seeds = unknown, gain = unknown, error_before = unknown, error_after = unknown, error_foretold = unknown,
            agreement_p = unknown;
     std::vector<double> before, after;  // over all observables, one after the other
+    bool holds() const { return passed && !contradicted; }
   } confirmation;
   double controls = 0, controls_named = 0;
   std::vector<Power> powers;

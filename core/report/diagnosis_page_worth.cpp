@@ -118,7 +118,7 @@ std::string DiagnosisSections::confirmation() const {
                                             : "There is no extended case to run.");
   std::string out = "<p>The old and the extended case were really run, " + format_number(c.seeds) +
                     " times each with seeds that the diagnosis had not used.</p><ul class=\"checks\">";
-  out += html_check(c.passed && !c.contradicted ? "good" : "bad",
+  out += html_check(c.holds() ? "good" : "bad",
                     !c.passed        ? "The improvement is not there."
                     : c.contradicted ? "The improvement is not what was foretold."
                                      : "The improvement is there.",

@@ -70,7 +70,7 @@ struct StudyDiagnosis {
   infer::Vector u_before, u_after;  // nuisance parameters without and with the named effects, standardised
   std::vector<double> u_sd;
   std::vector<std::size_t> explained;     // the named effects; when none is named, one that is likelier than all else
-  std::vector<std::size_t> dropped;       // probable beside what is named, but without a strength when run
+  std::vector<std::size_t> dropped;       // probable beside what is named, but adds nothing when it is run
   std::vector<infer::Vector> amplitudes;  // of these
   std::vector<double> amplitude_sd;       // of these where runs of the extended case were fitted
   infer::Vector before, after;            // numbers of the recalibrated model, and with what was explained

@@ -1,9 +1,11 @@
 """Options and the commands that do not run a case: help, version, check, plugin list, describe and schema."""
 import json
+import os
 import re
+import subprocess
 import unittest
 
-from calx import CASE, PLUGIN, PLUGINS, USAGE, CalxTest, cup, needs
+from calx import CASE, PLUGIN, PLUGINS, SOURCE, USAGE, CalxTest, cup, needs
 
 try:
     import jsonschema
@@ -68,6 +70,33 @@ class CommandLine(CalxTest):
         result = self.calx("--version")
         self.assertEqual(result.code, 0)
         self.assertRegex(result.out, r"^calx \d+\.\d+\.\d+ \(([0-9a-f]{9}\+?|unknown)\), ABI \d+\.\d+\n$")
+
+    def test_the_git_stamp_follows_commits_and_edits(self):
+        tree, source = self.dir / "tree", self.dir / "git_revision.cpp"
+        tree.mkdir()
+
+        def git(*words):
+            who = ("-c", "user.name=a", "-c", "user.email=a@example.org", "-c", "commit.gpgsign=false")
+            return subprocess.run(["git", *who, "-C", str(tree), *words], check=True, capture_output=True, text=True).stdout
+
+        def stamp():
+            subprocess.run(["cmake", "-D", f"SOURCE={tree}", "-D", f"OUTPUT={source}", "-P",
+                            str(SOURCE / "core/base/git_revision.cmake")], check=True,
+                           env={**os.environ, "GIT_CEILING_DIRECTORIES": str(self.dir)})
+            return re.search('return "(.*)"', source.read_text()).group(1)
+
+        self.assertEqual(stamp(), "unknown")
+        git("init", "-q")
+        for text in ("one", "two"):
+            (tree / "file").write_text(text)
+            git("add", "file")
+            git("commit", "-q", "-m", text)
+            commit = git("rev-parse", "HEAD")[:9]
+            self.assertEqual(stamp(), commit)
+        before = source.stat().st_mtime_ns
+        self.assertEqual((stamp(), source.stat().st_mtime_ns), (commit, before))
+        (tree / "file").write_text("edited")
+        self.assertEqual(stamp(), commit + "+")
 
     def test_usage(self):
         path = self.write(cup())

@@ -78,7 +78,9 @@ TEST_CASE("runs that contradict the forecast are said to, and the lone cause tha
   const std::string page = page_of(j);
   CHECK(has(page, "The improvement is not what was foretold."));
   CHECK(has(page, "instead of 0.321 sd"));
-  CHECK(has(page, "do not confirm"));
+  CHECK(has(
+      page,
+      "<div class=\"card bad\"><span class=\"name\">runs with new seeds</span><span class=\"value\">do not confirm"));
   CHECK(has(page, "Likeliest is "));
   CHECK_FALSE(has(page, "Still possible"));
 }
